@@ -6,10 +6,12 @@ from .api import Unstable as Unstable
 from .api import build as build
 from .api import cases as cases
 from .api import check as check
+from .api import diff as diff
 from .api import load as load
 from .api import open_run as open_run
 from .api import run as run
 from .api import set_threads as set_threads
+from .api import sweep as sweep
 from .builders.simulation import Simulation as Simulation
 from .run_folder import Run as Run
 from .scene.sections import Scene as Scene
@@ -27,8 +29,10 @@ __all__ = [
     "build",
     "cases",
     "check",
+    "diff",
     "load",
     "open_run",
     "run",
     "set_threads",
+    "sweep",
 ]

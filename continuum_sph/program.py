@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,13 +51,14 @@ def show(folder: Path) -> list[Path]:
     """Write pictures and film of the run in ``folder``; returns their paths."""
     from dataclasses import replace
 
+    from continuum_sph.look import is_dry
     from porescale.common.pictures.film import film
     from porescale.common.pictures.picture import paint_last, pictures
     from porescale.common.record.open_run import open_run
 
     run = open_run(folder)
     look, scene = look_of(run), run.card["scene"]
-    names = () if not scene["soil"] else SOIL if _dry(scene) else SEEPAGE
+    names = () if not scene["soil"] else SOIL if is_dry(scene) else SEEPAGE
     more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in names]
     return [*pictures(folder, look), *more, film(folder, look)]
 
@@ -67,51 +66,24 @@ def show(folder: Path) -> list[Path]:
 def look_of(run: Run) -> Look:
     """How pictures and films show a run: the speed of water, or where fluids and soil are, or how far soil has come."""
     from continuum_sph.builders.phreatic import NAME, line_of
-    from porescale.common.pictures.look import Look
+    from continuum_sph.look import look_of_scene
 
     scene = run.card["scene"]
-    width, height = scene["tank"]["width"], scene["tank"]["height"]
-    corners = [(0.0, height), (0.0, 0.0), (width, 0.0), (width, height)]
-    if scene["tank"]["lid"]:
-        corners.append(corners[0])
-    margin = 0.02 * width
-    more: dict[str, Any] = {"colour": "velocity"}
-    if scene["soil"] and _dry(scene):
-        more = {"colour": "displacement"}
-    elif scene["soil"]:
-        surface = run.table(NAME) if (run.folder / f"{NAME}.csv").exists() else {}
-        line = line_of(surface, scene["numerics"]["spacing"])
-        kinds = LAYERS | (AIR if scene.get("air") else {}) | LINE
-        more = {"colour": "layer", "kinds": kinds, "marks": line}
-    elif scene["inclusion"]:
-        more = {"colour": "fluid", "kinds": TWO}
-    return Look(
-        title=scene["title"] or run.card.get("name", ""),
-        cloud="particles",
-        lines=list(pairwise(corners)),
-        dot=0.5 * scene["numerics"]["spacing"],
-        view=(-margin, width + margin, -margin, height + margin),
-        **more,
-    )
-
-
-def _dry(scene: Mapping[str, Any]) -> bool:
-    """Whether a scene with soil is without water."""
-    return not (scene["water"]["column"] or scene.get("reservoir"))
+    surface = run.table(NAME) if (run.folder / f"{NAME}.csv").exists() else {}
+    return look_of_scene(scene, run.card.get("name", ""), line_of(surface, scene["numerics"]["spacing"]))
 
 
 SEEPAGE = ("pressure", "velocity", "porosity")
 """What is shown of soil and water at the end, besides where they are."""
-LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
-"""Names and colours of water and soil."""
-LINE = {-1: ("phreatic", "#c0182b")}
-"""Of the surface of the water in soil, which is no particle's layer."""
-AIR = {3: ("air", "#e2e2e2")}
-"""And of air in it."""
 SOIL = ("mean_stress", "plastic_strain", "velocity")
 """What is shown of soil at the end, besides how far it has come."""
-TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
-"""Names and colours of two fluids."""
+
+
+def measure(run: Run, scene: Scene) -> dict[str, dict[str, list[float]]]:
+    """What the measuring sections of ``scene`` read at every snapshot of a run."""
+    from continuum_sph.measure_run import measure_run
+
+    return measure_run(run, scene)
 
 
 PROGRAM = Program(
@@ -124,5 +96,7 @@ PROGRAM = Program(
     report=report,
     show=show,
     look=look_of,
+    measured=("probe", "level"),
+    measure=measure,
     formerly=FORMERLY,
 )

@@ -1,14 +1,20 @@
 # The public names of porescale, in one list: imported when first used, and what type checkers and editors see.
+from . import piv as piv
 from .api import build as build
 from .api import cases as cases
 from .api import check as check
+from .api import diff as diff
 from .api import load as load
 from .api import open_run as open_run
 from .api import run as run
 from .api import set_threads as set_threads
+from .api import sweep as sweep
 from .builders.scene import Scene as Scene
 from .builders.simulation import Simulation as Simulation
 from .common.api.open_run import Run as Run
+from .common.compiled.own import body_force as body_force
+from .common.compiled.own import contact_law as contact_law
+from .common.compiled.own import inflow as inflow
 from .common.core.constants import GRAVITY as GRAVITY
 from .common.core.errors import InputError as InputError
 from .common.core.errors import PorescaleError as PorescaleError
@@ -28,11 +34,17 @@ __all__ = [
     "Simulation",
     "Unstable",
     "__version__",
+    "body_force",
     "build",
     "cases",
     "check",
+    "contact_law",
+    "diff",
+    "inflow",
     "load",
     "open_run",
+    "piv",
     "run",
     "set_threads",
+    "sweep",
 ]

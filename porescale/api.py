@@ -10,13 +10,17 @@ from porescale.common.api.shipped import cases as cases
 from porescale.program import PROGRAM
 
 if TYPE_CHECKING:
+    import pandas
+
     from porescale.builders.scene import Scene
     from porescale.builders.simulation import Simulation
     from porescale.common.api.load_scene import Settings
     from porescale.common.api.open_run import Run
     from porescale.common.api.report import Report
+    from porescale.common.api.sweep import Vary
+    from porescale.common.schema.diff import Diff
 
-__all__ = ["build", "cases", "check", "load", "open_run", "run", "set_threads"]
+__all__ = ["build", "cases", "check", "diff", "load", "open_run", "run", "set_threads", "sweep"]
 
 
 def load(scene: str | Path, *, quality: str | None = None, settings: Settings = ()) -> Scene:
@@ -29,6 +33,16 @@ def load(scene: str | Path, *, quality: str | None = None, settings: Settings = 
 
     made: Scene = load_scene(PROGRAM, scene, quality, settings)
     return made
+
+
+def diff(a: Scene | Run, b: Scene | Run) -> Diff:
+    """What differs between two scenes, or those of two runs: a mapping, key -> (value in a, value in b), SI.
+
+    None where one has no such key; empty where they are equal.  Raises InputError for anything else.
+    """
+    from porescale.common.schema.diff import diff
+
+    return diff(a, b, PROGRAM.scene())
 
 
 def build(scene: Scene) -> Simulation:
@@ -79,3 +93,33 @@ def open_run(folder: str | Path) -> Run:
     from porescale.common.api.open_run import open_run
 
     return open_run(folder, PROGRAM)
+
+
+def sweep(
+    scene: Scene | str | Path,
+    vary: Vary,
+    out: str | Path | None = None,
+    *,
+    quality: str | None = None,
+    settings: Settings = (),
+    jobs: int = 1,
+    threads: int = 1,
+    again: bool = False,
+) -> pandas.DataFrame:
+    """Run a scene with keys varied, as the command ``sweep`` does, and compare the runs; needs pandas.
+
+    scene : a scene, its path, or the name of a case;  vary : ``{"contact.friction": [0.2, 0.5]}``, every combination
+    of all values; or a mapping key -> value for each run; or a CSV or TOML file;  out : folder, runs/, the scene's name
+    and _sweep if not given;  quality, settings : as of `load`, of all runs;  jobs : runs at a time;  threads : of each;
+    again : retry what went unstable or failed.
+
+    A row for each run, in the order of ``vary``: its name, the values varied, how it ended, what it cost, and the
+    quantities of expected.toml beside the scene, else how every column of its series ends.  The run folders, sweep.csv,
+    .md and .png lie in the folder, ``table.attrs["folder"]``; a sweep that was stopped goes on when called again.  Runs
+    that do not finish give a PorescaleWarning.  Raises InputError with what is wrong with any run before one starts.
+    """
+    from porescale.common.api.sweep import sweep
+
+    return sweep(
+        PROGRAM, scene, vary, out, quality=quality, settings=settings, jobs=jobs, threads=threads, again=again,
+    )  # fmt: skip

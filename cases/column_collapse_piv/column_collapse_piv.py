@@ -12,9 +12,7 @@ from filmed import BOX, FLOWS, RATE, STIRS, TANK, Place, film, lattice, named, r
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from porescale import Scene, build, open_run, set_threads
-from porescale.common.record.drive import drive
-from porescale.common.schema.sections import open_scene, scene_as_dict
+import porescale as ps
 from porescale.output import conclude, options
 from porescale.piv.fields import Field, Vortex, compare, vortices
 
@@ -47,19 +45,13 @@ class Seen:
 
 def ran(case: str, settings: Sequence[str], folder: Path) -> Path:
     """The run of a case in ``folder``, made or finished if need be."""
-    opened = open_scene(HERE.parent / case, Scene, overrides=(OFTEN, *settings))
-    scene = opened.scene
-    card = {"package": "porescale", "name": opened.name, "scene": scene_as_dict(scene), "quality": opened.quality}
-    drive(
-        build(scene), folder, scene.time.end, snapshot_interval=scene.output.snapshot_interval,
-        series_interval=scene.output.series_interval, card=card, resume=True, quiet=True,
-    )  # fmt: skip
+    ps.run(ps.load(HERE.parent / case, settings=[OFTEN, *settings]), folder, resume=folder.is_dir(), progress=False)
     return folder
 
 
 def look(folder: Path, place: Place, moments: Sequence[float]) -> Seen:
     """Film a run: from the gate's opening on until the water left of the column has set in, and at moments."""
-    run = open_run(folder)
+    run = ps.open_run(folder)
     times, filmed = [], []
     for time, field in film(run, max(0.0, place.opens - 1.5 / RATE), place.opens + 0.5):
         times.append(time)
@@ -105,7 +97,7 @@ def turn(vortex: Vortex | None) -> float:
 def main() -> int:
     """Run, film, measure, compare, judge and draw."""
     given = options(__doc__ or "", HERE, runs=(Path, None, "folder of runs named tank, box and box_with_a_gate"))
-    set_threads(1)
+    ps.set_threads(1)
     numbers: dict[str, float] = {}
     panels = []
     for name, (case, settings, place, moments) in FILMS.items():

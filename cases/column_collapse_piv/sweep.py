@@ -19,10 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from variants import VARIANTS, Variant
 
-from porescale import InputError, Scene, build, open_run
-from porescale.common.core.atomic import save, write_text
-from porescale.common.record.drive import drive
-from porescale.common.schema.sections import open_scene, scene_as_dict
+import porescale as ps
 from porescale.piv.fields import Vortex, vortices
 
 CASES = Path(__file__).resolve().parents[1]
@@ -37,14 +34,8 @@ def folder_of(variant: Variant, out: Path) -> Path:
 
 def run(variant: Variant, out: Path) -> None:
     """Run a variant, or go on with it; what is finished is left alone."""
-    opened = open_scene(CASES / variant.case, Scene, overrides=variant.settings)
-    scene = opened.scene
-    card = {"package": "porescale", "name": variant.name, "scene": scene_as_dict(scene)}
-    drive(
-        build(scene), folder_of(variant, out), scene.time.end, snapshot_interval=scene.output.snapshot_interval,
-        series_interval=scene.output.series_interval, checkpoint_seconds=scene.output.checkpoint_seconds,
-        card={**card, "quality": opened.quality, "settings": list(variant.settings)}, resume=True, quiet=True,
-    )  # fmt: skip
+    folder = folder_of(variant, out)
+    ps.run(ps.load(CASES / variant.case, settings=variant.settings), folder, resume=folder.is_dir(), progress=False)
 
 
 def seen(folder: Path, moment: float) -> dict[str, Vortex | None]:
@@ -70,8 +61,8 @@ def told(it: Vortex | None) -> str:
 def finished(folder: Path) -> bool:
     """Whether a run is there up to the last of TIMES."""
     try:
-        run = open_run(folder)
-    except (InputError, OSError):
+        run = ps.open_run(folder)
+    except (ps.InputError, OSError):
         return False
     return len(run) > 0 and run.times[-1] > TIMES[-1] - 0.02
 
@@ -89,7 +80,7 @@ def table(out: Path) -> Path:
             continue
         cells = [told(it) for moment in TIMES for it in seen(folder, moment).values()]
         rows.writerow([variant.name.rpartition(",")[0], variant.cells, *cells])
-    write_text(out / "vortices.csv", text.getvalue())
+    (out / "vortices.csv").write_text(text.getvalue(), encoding="utf-8")
     return out / "vortices.csv"
 
 
@@ -115,7 +106,7 @@ def panels(out: Path) -> Path | None:
         for one, moment in zip(axes, TIMES, strict=True):
             panel(one, folder, moment, f"{name.rpartition(',')[0]}, {moment:g} s")
     path = out / "vortices.png"
-    save(path, lambda beside: figure.savefig(beside, format="png", dpi=80))
+    figure.savefig(path, dpi=80)
     return path
 
 
@@ -124,7 +115,7 @@ def panel(axes: Axes, folder: Path, moment: float, title: str) -> None:
     field, size = lattice(folder, moment), size_of(folder)
     speed = np.hypot(field.u, field.v)
     axes.pcolormesh(100 * field.x, 100 * field.y, 100 * speed, cmap="Greys", vmin=0, vmax=30, rasterized=True)
-    grains = open_run(folder).nearest(moment).clouds["grains"]
+    grains = ps.open_run(folder).nearest(moment).clouds["grains"]
     discs = [Circle((100 * x, 100 * y), 100 * r) for (x, y), r in
              zip(grains.position[:, :2], grains.data["radius"], strict=True)]  # fmt: skip
     axes.add_collection(PatchCollection(discs, facecolor="#d9b77e", edgecolor="none"))

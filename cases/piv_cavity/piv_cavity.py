@@ -9,9 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from porescale import Scene, build, open_run, set_threads
-from porescale.common.record.drive import drive
-from porescale.common.schema.sections import open_scene, scene_as_dict
+import porescale as ps
 from porescale.output import conclude, options, stage
 from porescale.piv.estimate import Settings, measure
 from porescale.piv.fields import Comparison, Field, Vortex, compare, field_of_run, in_metres, in_pixels, vortices
@@ -31,20 +29,15 @@ CORNERS = {"lower left": (0.0, 0.25, 0.0, 0.25), "lower right": (0.7, 1.0, 0.0, 
 
 def cavity(out: Path, quality: str = "standard") -> Path:
     """The run of cases/lid_driven_cavity in ``out``, made if it is not there."""
-    settings = ("output.snapshot_interval=30",)
-    opened = open_scene(HERE.parent / "lid_driven_cavity", Scene, quality=quality, overrides=settings)
-    scene = opened.scene
-    card = {"package": "porescale", "name": opened.name, "scene": scene_as_dict(scene), "quality": opened.quality}
-    drive(
-        build(scene), out, scene.time.end, snapshot_interval=scene.output.snapshot_interval,
-        series_interval=scene.output.series_interval, card=card, resume=True, quiet=True,
-    )  # fmt: skip
+    settings = {"output.snapshot_interval": 30}
+    scene = ps.load(HERE.parent / "lid_driven_cavity", quality=quality, settings=settings)
+    ps.run(scene, out, resume=out.is_dir(), progress=False)
     return out
 
 
 def filmed(folder: Path, lid: float, pairs: int, camera: Camera | None = None) -> tuple[list[Frame], float]:
     """Frames of the last moments of a run and the seconds between them; the lid goes ``lid`` px in each."""
-    run, scale = open_run(folder), 1 / PIXELS
+    run, scale = ps.open_run(folder), 1 / PIXELS
     interval = lid * scale
     end = float(run.times[-1])
     shot = Shooting(camera or Camera(), scale, interval, end - (pairs + 0.5) * interval, end)
@@ -124,7 +117,7 @@ def judged(
 def main() -> int:
     """Run the cavity, film it, measure the film, judge and draw."""
     given = options(__doc__ or "", HERE, pairs=(int, 3, "pairs of each film"))
-    set_threads(1)
+    ps.set_threads(1)
     numbers, field, found = judged(cavity(given.out / "run"), given.pairs)
     return conclude(HERE, numbers, drawn(given.out / "run", field, found), given.out)
 

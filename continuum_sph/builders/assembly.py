@@ -37,7 +37,7 @@ class Particles(Protocol):
         """Positions (n, 2) m and velocities (n, 2) m/s in the order of the cloud, as they lie in memory or copies."""
 
     def masses(self) -> Floats:
-        """Masses in the order of the cloud, (n,) kg/m; a copy."""
+        """Masses in the order of the cloud, (n,) kg/m, as they lie in memory or copies."""
 
 
 @dataclass

@@ -84,11 +84,35 @@ def discharge(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float
     return float((cloud.volume * share * cloud.v[:, 0])[inside].sum()) / (right - left) if right > left else 0.0
 
 
-def probe_row(probes: tuple[ProbeSection, ...], cloud: MeasuredWater) -> dict[str, float]:
-    """Columns of probes.csv: pressure (Pa) and velocity (m/s) at each probe."""
-    row = {}
+def mean_row(name: str, probe: ProbeSection, cloud: MeasuredWater, water: Floats) -> dict[str, float]:
+    """Columns of a probe that is a rectangle: means of pressure (Pa) and velocity (m/s) over the water of the particles
+    in it, ``water`` (n,) m², and the share of the rectangle that is water."""
+    assert probe.width is not None
+    assert probe.height is not None
+    off = np.abs(cloud.x - (probe.x, probe.y))
+    inside = (off[:, 0] <= 0.5 * probe.width) & (off[:, 1] <= 0.5 * probe.height)
+    own, total = water[inside], float(water[inside].sum())
+    values = np.column_stack((cloud.pressure, cloud.v))[inside]
+    p, u, v = (own @ values / total).tolist() if total > 0.0 else (float("nan"),) * 3
+    return {
+        f"{name} mean pressure (Pa)": p, f"{name} mean velocity x (m/s)": u, f"{name} mean velocity y (m/s)": v,
+        f"{name} fluid share ()": total / (probe.width * probe.height),
+    }  # fmt: skip
+
+
+def probe_row(
+    probes: tuple[ProbeSection, ...], cloud: MeasuredWater, share: Floats | float = 1.0
+) -> dict[str, float]:  # fmt: skip
+    """Columns of probes.csv: pressure (Pa) and velocity (m/s) at each probe, or their means over a rectangle.
+
+    share (n,): of each particle's volume that is water.
+    """
+    row: dict[str, float] = {}
     for k, probe in enumerate(probes):
         name = probe.name or f"probe {k}"
+        if probe.width is not None:
+            row |= mean_row(name, probe, cloud, cloud.volume * share)
+            continue
         p, u, v = interpolate((probe.x, probe.y), cloud)
         row[f"{name} pressure (Pa)"] = float(p)
         row[f"{name} velocity x (m/s)"] = float(u)

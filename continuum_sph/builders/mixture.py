@@ -155,7 +155,7 @@ class PoreInstruments(Part):
         )  # fmt: skip
         found: dict[str, dict[str, float]] = {}
         if self.probes:
-            found["probes"] = probe_row(self.probes, cloud)
+            found["probes"] = probe_row(self.probes, cloud, flow.porosity[there])
         if self.levels:
             found["levels"] = level_row(self.levels, cloud)
         found[NAME] = phreatic_row(cloud)

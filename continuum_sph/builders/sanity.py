@@ -31,6 +31,8 @@ def advance_one(advance: Callable[[], object], now: Now) -> None:
     try:
         advance()
     except ValueError as error:
+        if getattr(error, "__notes__", None):  # of a function of the user's
+            raise
         raise Unstable(str(error), "position", float("nan"), "m", *now) from error
 
 

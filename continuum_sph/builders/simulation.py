@@ -1,6 +1,9 @@
 """A scene as `porescale.common.record` drives it: something that moves, and a list of parts."""
 
-from typing import Any, TypeVar
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -8,10 +11,18 @@ from continuum_sph.builders import mixture, soil, water
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.sanity import Now, advance_one
 from continuum_sph.scene.sections import Scene
-from porescale.common.api.simulation import BaseSimulation
+from porescale.common.api.fields import Field, scalars
+from porescale.common.api.hooks import ForceHook, Hook
+from porescale.common.api.shown_simulation import ShownSimulation
+from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
 from porescale.common.record.part import Part, overrides, restore, row_of, state_of, tables_of
+from porescale.common.schema.sections import scene_as_dict
+
+if TYPE_CHECKING:
+    from porescale.common.api.report import Report
+    from porescale.common.pictures.look import Look
 
 P = TypeVar("P", bound=Part)
 
@@ -23,7 +34,7 @@ def assemble(scene: Scene) -> Assembly:
     return soil.assemble(scene) if scene.dry else mixture.assemble(scene)
 
 
-class Simulation(BaseSimulation):
+class Simulation(ShownSimulation):
     """Model of a scene; see `porescale.common.record.model.Model`.
 
     Particles, as in `positions`, are those that a snapshot shows: water or soil in the order in which they were placed;
@@ -68,7 +79,42 @@ class Simulation(BaseSimulation):
     @property
     def masses(self) -> Floats:
         """Masses of the particles, (n,) kg per metre of depth; a copy."""
-        return self.shown.masses()
+        return self.shown.masses().copy()
+
+    def _sizes(self) -> str:
+        return f"{len(self.motion()[0])} particles, {self.scene.numerics.spacing:.4g} m apart"
+
+    def _report(self) -> Report:
+        from continuum_sph.builders.report import report
+
+        return report(self.scene)
+
+    def _look(self) -> Look:
+        from continuum_sph.builders.phreatic import NAME, line_of
+        from continuum_sph.look import look_of_scene
+
+        table = self.tables().get(NAME)
+        row = {name: np.array([value]) for name, value in (table or {}).items()}
+        surface = line_of(row, self.scene.numerics.spacing) if table else None
+        return look_of_scene(scene_as_dict(self.scene), self.name, surface)
+
+    def _fields(self) -> dict[str, Field]:
+        cloud = self.shown.cloud()
+        return scalars(cloud.data, cloud.units)
+
+    def _with_field(self, snapshot: Snapshot, look: Look, name: str, field: Field) -> Look:
+        cloud = snapshot.clouds["particles"]
+        cloud.data[name], cloud.units[name] = field
+        return replace(look, colour=name, kinds={})
+
+    def _add_force(self, hook: ForceHook, instead_of: Hook | None) -> None:
+        from continuum_sph.builders.user_forces import UserForces
+
+        part = next((it for it in self.parts if isinstance(it, UserForces)), None)
+        if part is None:
+            part = UserForces(self.flow, self.shown)
+            self.parts.append(part)
+        part.hooks = [*(it for it in part.hooks if it is not instead_of), hook]
 
     def _after(self) -> None:
         for part in self.parts:
@@ -84,11 +130,16 @@ class Simulation(BaseSimulation):
         for _ in range(steps):
             for act in before:
                 act()
-            advance_one(self.flow.advance, Now(self.step, self.time, self.repair))
+            try:
+                advance_one(self.flow.advance, Now(self.step, self.time, self.repair))
+            except Unstable:
+                self._check_forces()
+                raise
             self._after()
 
     def check(self) -> None:
         """Raise Unstable when the state of a part is not finite or out of bounds."""
+        self._check_forces()
         for part in self.parts:
             part.check()
 

@@ -128,8 +128,8 @@ class SoilPart(Part):
         return soil.x[: soil.soil], soil.v[: soil.soil]
 
     def masses(self) -> Floats:
-        """Masses of the soil, (n,) kg/m; a copy."""
-        return self.flow.soil.mass[: self.flow.soil.soil].copy()
+        """Masses of the soil, (n,) kg/m; a view."""
+        return self.flow.soil.mass[: self.flow.soil.soil]
 
     def cloud(self) -> Cloud:
         """The soil: velocity, displacement, stress, what yielded and what came apart."""

@@ -117,8 +117,8 @@ class WaterPart(Part):
         return layer.x[: layer.fluid], layer.v[: layer.fluid]
 
     def masses(self) -> Floats:
-        """Masses of the water, (n,) kg/m; a copy."""
-        return self.flow.layer.mass[: self.flow.layer.fluid].copy()
+        """Masses of the water, (n,) kg/m; a view."""
+        return self.flow.layer.mass[: self.flow.layer.fluid]
 
     def cloud(self) -> Cloud:
         """The water: velocity, pressure, density."""

@@ -2,15 +2,27 @@
 
 import pydantic
 
+from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Section, quantity
 
 
 class ProbeSection(Section):
-    """A point where pressure and velocity of the water are recorded over time: probes.csv."""
+    """A point where pressure and velocity of the water are recorded over time: probes.csv.
+
+    With width and height a rectangle about it, in which their means over the water are: the mean pore pressure.
+    """
 
     name: str = pydantic.Field("", description="name in the columns (default: its number)")
-    x: float = quantity("m", ge=0, le=1e5, help="place")
-    y: float = quantity("m", ge=0, le=1e5, help="place")
+    x: float = quantity("m", ge=0, le=1e5, help="place, or centre")
+    y: float = quantity("m", ge=0, le=1e5, help="place, or centre")
+    width: float | None = quantity("m", None, ge=1e-6, le=1e5, help="width of a rectangle to take the mean over")
+    height: float | None = quantity("m", None, ge=1e-6, le=1e5, help="height of a rectangle to take the mean over")
+
+    def _faults(self) -> list[Fault]:
+        if (self.width is None) != (self.height is None):
+            key = "width" if self.width is None else "height"
+            return [Fault(key, None, "a rectangle needs both", "m", repair="give width and height, or neither")]
+        return []
 
 
 class LevelSection(Section):

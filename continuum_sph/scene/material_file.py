@@ -75,13 +75,26 @@ class MaterialFile(Section):
 
 
 class Origin(Section):
-    """Where numbers of the soil come from: file and its SHA-256, its own description, means and standard errors."""
+    """Where numbers of the soil come from: file and its SHA-256, its own description, means and standard errors.
+
+    The same file under another name, or in another place, is the same origin.
+    """
 
     file: str
     sha256: str
     intrinsic_permeability: float | None = quantity("m^2", None, gt=0)
     measured: dict[str, tuple[float, float]] = pydantic.Field(default_factory=dict)
     made: dict[str, Any] = pydantic.Field(default_factory=dict)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all but the name of the file is equal."""
+        if not isinstance(other, Origin):
+            return NotImplemented
+        return self.model_dump(exclude={"file"}) == other.model_dump(exclude={"file"})
+
+    def __hash__(self) -> int:
+        """Equal origins have equal hashes."""
+        return hash(self.sha256)
 
 
 def read_material(path: Path) -> tuple[MaterialFile, str]:

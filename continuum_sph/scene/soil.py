@@ -1,7 +1,7 @@
 """The section of the soil."""
 
 import math
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -70,6 +70,8 @@ class SoilSection(Section):
     "slip".
     """
 
+    files: ClassVar[tuple[str, ...]] = ("material",)
+
     strength: Literal["critical", "peak"] = "critical"
     origin: Origin | None = None
     density: float = quantity("kg/m^3", 1590.0, ge=1, le=1e5, help="of grains per whole volume: (1 - n) times theirs")
@@ -94,6 +96,12 @@ class SoilSection(Section):
     sides: Literal["hold", "slip"] = "slip"
     body: tuple[Body, ...] = pydantic.Field(min_length=1, description="pieces of ground")
     numerics: SoilNumerics = SoilNumerics()
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        about = "file of porescale homogenise, whose numbers hold where the scene has none of its own"
+        material = {"type": "string", "description": about}
+        return {**schema, "properties": {**schema["properties"], "material": material}}
 
     @property
     def height(self) -> float:

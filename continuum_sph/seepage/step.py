@@ -1,5 +1,6 @@
 """One step of two layers: half a drag, kicks and drifts of both, stresses, pressures, forces, the other half."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -42,7 +43,8 @@ class Seepage:
 
     modulus : largest M of the soil (Pa) and weight : least whole density (kg/m³), for the step that sound allows when
     both layers move together;  next_step s;  load (soil, 2) N/m: dead load on the soil, or None;  supply : water that
-    is kept at levels, or None.
+    is kept at levels, or None;  before_force : called before the soil is accelerated, to add to the accelerations of
+    the water and to ``skeleton.force``.
     """
 
     water: PoreFlow
@@ -52,6 +54,7 @@ class Seepage:
     next_step: float = 0.0
     load: NDArray[np.float64] | None = None
     supply: Supply | None = None
+    before_force: "Callable[[Seepage], None] | None" = None
 
     def __post_init__(self) -> None:
         self.wet = np.zeros_like(self.water.borne)
@@ -111,6 +114,8 @@ class Seepage:
         soil.force += water.borne
         if self.load is not None:
             soil.force += self.load
+        if self.before_force is not None:
+            self.before_force(self)
         self.ground.push()
         np.copyto(soil.force, self.wet)
         if not soil.held:

@@ -16,6 +16,7 @@ circle for ωΔt < 0.7, with damping 1 - (ωΔt)⁴/2; with D alone (no extrapol
 uses ρ*; ρ itself is never extrapolated.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -46,7 +47,7 @@ class Flow:
     step : steps done;  time, next_step : s;  last_steps : lengths (s) of the last step and the one before;
     limited : steps that each of `law.RULES` limited, rule : the one that limits the next;  stopped : times a particle
     was stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set;  sound_rate : largest c/h,
-    1/s;  max_speed : m/s.
+    1/s;  max_speed : m/s;  before_force : called once accelerations are computed, to add to them.
     """
 
     layer: Layer
@@ -61,6 +62,7 @@ class Flow:
     stopped: int = 0
     sound_rate: float = 0.0
     max_speed: float = 0.0
+    before_force: "Callable[[Flow], None] | None" = None
 
     def __post_init__(self) -> None:
         layer, count = self.layer, self.layer.count
@@ -239,6 +241,8 @@ class Flow:
                 fluid, layer.record, near, layer.material, self.table, layer.matrix, self.concentration_gradient,
                 layer.drift, 2.0 * h * law.shifting * urge, MOST * urge,
             )  # fmt: skip
+        if self.before_force is not None:
+            self.before_force(self)
 
     @property
     def wall_densities(self) -> WallDensities:

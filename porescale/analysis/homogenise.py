@@ -9,11 +9,10 @@ et al. 2005, Phys. Rev. E 72, 021309): quasi-static to I = 1e-3.
 import math
 from typing import Any
 
-from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.sections import scene_as_dict, validate
-from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.linear import Linear
 from porescale.dem.prepare.compaction import DEEPEST
 from porescale.scene.measures.homogenise import Homogenise
@@ -69,9 +68,9 @@ def require_measurable(scene: Scene) -> None:
     if scene.grains is None or scene.grains.packing is None:
         repair = "add [grains.packing]: sizes, density and the way they are packed"
         raise InputError(Fault("grains.packing", None, "is missing: there is no packing to measure", repair=repair))
-    if scene.contact and not LAWS[scene.contact.law].compresses:
+    if scene.contact and not law_class(scene.contact).compresses:
         problem = "packings are compressed under the linear law only"
-        faults.append(Fault("contact.law", scene.contact.law, problem, repair='take "linear"'))
+        faults.append(Fault("contact.law", str(scene.contact.law), problem, repair='take "linear"'))
     for name in ("clump", "polygon", "segment", "rock", "bonds"):
         if getattr(scene, name):
             faults.append(Fault(name, None, "is not measured: specimens are of single discs", repair="leave it out"))

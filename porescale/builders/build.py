@@ -36,7 +36,7 @@ def system_of(scene: Scene) -> System:
     derived = derive(scene)
     require_memory(derived)
     made = System(scene, derived, Clock(derived.model_step), frames=frames_of(scene, derived))
-    if scene.grains or scene.disc or scene.rectangle:
+    if scene.grains or scene.disc or scene.rectangle or scene.ring:
         made.grains, made.recorded = grains_of(scene, derived, made.frames)
     if scene.fluid:
         made.fluid = fluid_of(scene.fluid, scene.domain, derived)

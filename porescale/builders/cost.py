@@ -18,6 +18,8 @@ CALLS, COUPLED_CALLS = 5e-6, 45e-6
 without them a run of a small scene would make every machine look slow."""
 SNAPSHOT = 1000.0
 """Bytes of a snapshot besides its numbers."""
+ALWAYS = 2.0**27
+"""Bytes that the compiler of kernels takes itself: any machine has them, and the question takes time to ask."""
 SIDE = 10
 """What a side of a polygon costs, in discs, at the most (verify measures it)."""
 
@@ -65,9 +67,8 @@ def remember(derived: Derived, steps_per_second: float) -> None:
 
 def require_memory(derived: Derived) -> None:
     """Raise InputError when the arrays would not fit into this machine's memory."""
-    have = memory_bytes()
     need = memory(derived)
-    if need <= 0.9 * have:
+    if need <= ALWAYS or need <= 0.9 * (have := memory_bytes()):
         return
     problem = f"needs {need / 2**30:.1f} of {have / 2**30:.1f} GiB"
     if derived.scales:

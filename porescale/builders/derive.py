@@ -11,18 +11,18 @@ import numpy as np
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
 from porescale.builders.checks.numbers import check_controls
+from porescale.builders.checks.own_laws import check_own_contact
 from porescale.builders.checks.packing import check_compressed
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.builders.checks.regime import check_regime, expected_speed
 from porescale.builders.initial.clumps import lightest
-from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, placed_frames, sizes_of
 from porescale.builders.initial.packing import radii_of
 from porescale.builders.initial.placed import by_hand, placed
 from porescale.builders.initial.rock import rock_frames
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.timestep import packing_limit, stable_step
@@ -80,6 +80,7 @@ def derive(scene: Scene) -> Derived:
         smallest = math.pi / 4 * sizes[0] ** 2 * least, sizes[0] / 2
         mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
         law, wall_law, every = plan.law_and_others(packing.material if packing else "", mean_mass)
+        check_own_contact(scene.contact, every, *smallest)
         if scene.clump:
             smallest = min(smallest[0], lightest(scene.clump, plan, every)), smallest[1]
         if scene.rock and not faults:
@@ -209,9 +210,9 @@ def _contact_step(
     if steps > MANY:
         problem = f"takes {steps:.3g} contact steps of {wanted:.3g} s"
         repair = "lower contact.stiffness, give the grains a size in metres, or shorten the step of the fluid"
-        key, unit = LAWS[contact.law].required
-        what = getattr(contact, key)
-        faults.append(Fault(f"contact.{key}", what, f"{problem} in a step of the fluid", unit, repair=repair))
+        key, unit = law_class(contact).required
+        what = getattr(contact, key) if key else None
+        faults.append(Fault(f"contact.{key or 'law'}", what, f"{problem} in a step of the fluid", unit, repair=repair))
     if step > limit:
         faults.append(
             Fault("contact.step", step, "is beyond the stability limit of a packing", "s", f"< {limit:.3g}",

@@ -46,6 +46,7 @@ KINDS = (
     Kind(("fluid",), lambda it: it.fluid is not None, "flow_series.FlowSeries"),
     Kind(("gate",), lambda it: it.scene.gate is not None, "gate.GatePart"),
     Kind(("rectangle",), lambda it: bool(it.scene.rectangle), "rectangles.RectanglesPart"),
+    Kind(("disc",), lambda it: bool(it.grains and any(disc.timed for disc in it.scene.disc)), "discs.DiscsPart"),
     Kind(("cell",), lambda it: bool(it.grains and it.scene.cell), "cell.CellPart"),
     Kind(("grains", "disc", "clump"), lambda it: bool(it.grains and disc_count(it.grains)), "clouds.GrainCloud"),
     Kind(("segment", "polygon", "container"), lambda it: bool(it.frames), "clouds.FrameCloud"),
@@ -61,7 +62,7 @@ KINDS = (
     Kind(("rock",), lambda it: bool(it.grains and has_plates(it.scene.rock)), "rock.RockPart"),
 )
 
-OF_THE_START = ("contact", "material", "wall", "lubrication")
+OF_THE_START = ("contact", "material", "wall", "ring", "lubrication")
 """Sections of which fluid and grains are made, with no part of their own."""
 OF_THE_RECORD = ("line", "permeability")
 """Sections that are measured in what a run has recorded."""

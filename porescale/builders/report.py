@@ -10,8 +10,10 @@ from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.builders.kinds import SECTIONS
 from porescale.common.api.report import Report, report_output
+from porescale.common.schema.own import own_laws
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
+from porescale.dem.contact.own import OwnContact
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.bodies.disc import Disc
 from porescale.scene.bodies.segments import PolygonBody, SegmentBody
@@ -32,12 +34,18 @@ def report(scene: Scene) -> Report:
     if derived.scales:
         _lattice(derived, out)
     if scene.fluid:
-        _operators(scene.fluid, bool(scene.grains or scene.disc or scene.rectangle), out)
+        _operators(scene.fluid, bool(scene.grains or scene.disc or scene.rectangle or scene.ring), out)
     if scene.disc:
         _discs(scene.disc, derived, out)
+    if scene.ring and derived.scales:
+        out.heading("Ring")
+        out.row("cells across", scene.ring.diameter / derived.scales.spacing, "", "each row of the box is partly solid")
+        out.row("speed of its wall", 0.5 * abs(scene.ring.spin) * scene.ring.diameter, "m/s")
     if scene.grains:
         _grains(scene.grains, derived.grain_count - len(scene.disc), derived, out)
         _contact(derived, out)
+    if next(own_laws(scene), None):
+        _own_laws(scene, derived, out)
     if derived.corners:
         _frames(scene, derived, out)
     if scene.fluid and scene.grains:
@@ -142,13 +150,34 @@ def _contact(derived: Derived, out: Report) -> None:
     assert derived.contact_step is not None
     out.heading("Contact")
     mass = derived.mean_mass / 2
-    lasts, remark = law.contact_report(mass, derived.diameters[1] / 4)  # reduced radius of two mean grains
-    out.row("damping ratio of a pair", law.ratio_of_damping(mass))
+    radius = derived.diameters[1] / 4  # reduced, of two mean grains
+    lasts, remark = law.contact_report(mass, radius)
+    out.row("damping ratio of a pair", law.ratio_of_damping(mass, radius))
     out.row("contact time of a pair", lasts, "s", remark)
-    out.row("restitution of a pair", law.restitution(mass))
+    out.row("restitution of a pair", law.restitution(mass, radius))
     out.row("stability limit in a packing", derived.contact_limit, "s")
     out.row("contact step", derived.contact_step, "s")
     out.row("contact steps per model step", derived.contact_steps or 1)
+
+
+def _own_laws(scene: Scene, derived: Derived, out: Report) -> None:
+    """The laws of a user's files, with their numbers; and what follows from a contact law for the smallest grains."""
+    out.heading("Own laws")
+    for key, it in own_laws(scene):
+        out.row(key, it.reference, "", f"hash {it.hash}, of {', '.join(it.sources)}")
+    law, contact = derived.law, scene.contact
+    if not (isinstance(law, OwnContact) and contact and derived.diameters):
+        return
+    for (key, unit), number in zip(law.units.items(), law.numbers, strict=True):
+        out.row(f"contact.{key}", number, unit)
+    radius = derived.diameters[0] / 2
+    mass = math.pi * radius**2 * (scene.grains.density if scene.grains else 0.0)
+    out.row("stiffest tangent", law.stiffest(mass, radius).stiffness[0], "N/m", f"up to {law.deepest:g} of a radius")
+    fastest = law.fastest_impact(mass, radius)
+    for speed in (0.01 * fastest, 0.1 * fastest, fastest):
+        found = law.collision(mass / 2, radius / 2, speed)
+        note = f"two smallest grains at {speed:.3g} m/s, restitution {found.restitution:.6g}"
+        out.row("contact time", found.seconds, "s", note)
 
 
 def _regime(density: float, gravity: float, derived: Derived, out: Report) -> None:

@@ -1,19 +1,31 @@
 """A simulation: the parts that a scene has sections for, driven through time.  A `Model` of `common.record`."""
 
-from typing import Any, TypeVar
+from __future__ import annotations
 
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from porescale.builders.initial.frames import disc_count
 from porescale.builders.stepper import Fields, Stepper
 from porescale.builders.system import System
-from porescale.common.api.simulation import BaseSimulation, absent
+from porescale.common.api.fields import Field, scalars
+from porescale.common.api.hooks import ForceHook, Hook
+from porescale.common.api.shown_simulation import ShownSimulation
+from porescale.common.api.simulation import absent
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
 from porescale.common.record.part import Part, acts_between, overrides, restore, row_of, state_of, tables_of
+from porescale.common.schema.sections import scene_as_dict
+
+if TYPE_CHECKING:
+    from porescale.common.api.report import Report
+    from porescale.common.pictures.look import Look
 
 P = TypeVar("P", bound=Part)
 
 
-class Simulation(BaseSimulation):
+class Simulation(ShownSimulation):
     """A scene in motion.
 
     Grains, as in `positions`, are all discs in the order of the scene: the packing, grains and members of clumps placed
@@ -31,6 +43,7 @@ class Simulation(BaseSimulation):
         self.fluid, self.grains, self.coupled = system.fluid, system.grains, system.coupled
         self.weight, self.frames = system.weight, system.frames
         self.stepper, self.parts = stepper, system.parts
+        self._held = system.held
         self._before = [part.before for part in self.parts if overrides(part, "before")]
         self._after = [part.after for part in self.parts if overrides(part, "after")]
         self._between = [part for part in self.parts if acts_between(part)]
@@ -94,11 +107,69 @@ class Simulation(BaseSimulation):
         values: Floats = getattr(self.grains.discs, name)[:count].copy()
         return values
 
+    def _sizes(self) -> str:
+        words = []
+        if self.fluid:
+            assert self.derived.scales
+            words.append(f"{self.fluid.nx} x {self.fluid.ny} cells of {self.derived.scales.spacing:.4g} m")
+        if self.grains:
+            count = disc_count(self.grains)
+            words += [f"{count} grain{'s' * (count > 1)}"] if count else []
+            words += [f"{len(self.frames)} bodies of segments"] if self.frames else []
+        return ", ".join(words)
+
+    def _report(self) -> Report:
+        from porescale.builders.report import report
+
+        return report(self.scene)
+
+    def _look(self) -> Look:
+        from porescale.output.show import look_of_scene
+
+        return look_of_scene(scene_as_dict(self.scene), self.name)
+
+    def _fields(self) -> dict[str, Field]:
+        if self.fluid:
+            from porescale.builders.parts.flow_fields import all_fields
+
+            assert self.derived.scales
+            return all_fields(self.scene.gravity, self.derived.scales, self.fluid, *self.fields())
+        snapshot = self.snapshot()
+        cloud = snapshot.clouds.get("grains")
+        if cloud is None:
+            raise absent("field", "fluid and no grains", "snapshot() has its bodies of segments")
+        return scalars(cloud.data, cloud.units)
+
+    def _with_field(self, snapshot: Snapshot, look: Look, name: str, field: Field) -> Look:
+        if self.fluid:
+            grid = snapshot.grids["fields"]
+            grid.cells[name], grid.units[name] = field
+            return replace(look, field=name, label="")
+        cloud = snapshot.clouds["grains"]
+        cloud.data[name], cloud.units[name] = field
+        return replace(look, colour=name)
+
+    def _add_force(self, hook: ForceHook, instead_of: Hook | None) -> None:
+        from porescale.builders.parts.clouds import GrainCloud
+        from porescale.builders.parts.user_forces import UserForces
+
+        part = self.part(UserForces)
+        if part is None:
+            cloud = self.part(GrainCloud)
+            if cloud is None:
+                raise absent(f"force {hook.name}", "discs that it could act on", "add [grains], [[disc]] or [[clump]]")
+            part = UserForces(self.stepper, self.coupled, cloud, self._held)
+            self.parts.append(part)
+            self._before.append(part.before)
+            self._between.append(part)
+        part.hooks = [*(it for it in part.hooks if it is not instead_of), hook]
+
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
         try:
             self._advance(steps)
         except Unstable as error:
+            self._check_forces()
             raise self.stepper.explained(error) from None
 
     def _advance(self, steps: int) -> None:
@@ -120,6 +191,7 @@ class Simulation(BaseSimulation):
 
     def check(self) -> None:
         """Raise Unstable, naming cell or grain, quantity and step, when the state is not finite or out of bounds."""
+        self._check_forces()
         for part in self.parts:
             part.check()
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from porescale.piv.fields.field import Field
 
 
-FILMS = (".mp4", ".avi", ".mov", ".mkv", ".webm")
+FILMS = (".mp4", ".avi", ".mov", ".mkv", ".webm", ".tif", ".tiff")
 """File name endings that are read as films."""
 
 
@@ -107,28 +107,27 @@ def render(
 ) -> int:
     """Film a run with a virtual camera: tracers carried by its flow, as pictures, masks and a film."""
     from porescale.common.record.open_run import open_run
-    from porescale.piv.images.camera import GREYS, Shooting, fastest, shooting
+    from porescale.piv.images.camera import GREYS, shot_of
     from porescale.piv.images.filmed import write_frames
     from porescale.piv.images.synth import Camera
 
     folder = out or run / "piv"
     opened = open_run(run)
     require_writable(folder, "--out")
-    first, last = (float(it) for it in opened.times[[0, -1]]) if len(opened) else (0.0, 0.0)
-    begin = first if start is None else quantity("--start", start, "s")
-    stop = last if end is None else quantity("--end", end, "s")
-    if not first <= begin < stop <= last:
-        text = f"{begin:g} to {stop:g}"
-        raise InputError(Fault("--start, --end", text, "is not within the run", "s", f"{first:g} to {last:g}"))
-    pixel, speed = fastest(opened, begin, stop)
-    pixel = pixel if scale is None else quantity("--scale", scale, "m")
-    pause = 4 * pixel / speed if interval is None else quantity("--interval", interval, "s")
-    camera = Camera(density=density, diameter=diameter, noise=noise, disc=GREYS[grains])
-    shot = shooting(opened, Shooting(camera, pixel, pause, begin, stop, exposure, seed))
+    shot = shot_of(
+        opened,
+        Camera(density=density, diameter=diameter, noise=noise, disc=GREYS[grains]),
+        scale=None if scale is None else quantity("--scale", scale, "m"),
+        interval=None if interval is None else quantity("--interval", interval, "s"),
+        start=None if start is None else quantity("--start", start, "s"),
+        end=None if end is None else quantity("--end", end, "s"),
+        exposure=exposure,
+        seed=seed,
+    )
     count = write_frames(opened, shot, folder)
     rows, columns = shot.camera.size
-    print(f"{count} frames of {columns} x {rows} px, {pixel:.4g} m a pixel, {pause:.4g} s apart")
-    options = f"--mask {folder}/masks --scale {pixel:.6g} --interval {pause:.6g} --time {begin:g}"
+    print(f"{count} frames of {columns} x {rows} px, {shot.scale:.4g} m a pixel, {shot.interval:.4g} s apart")
+    options = f"--mask {folder}/masks --scale {shot.scale:.6g} --interval {shot.interval:.6g} --time {shot.start:g}"
     print(f"measure with: porescale piv measure {folder}/frames {options}")
     return 0
 

@@ -21,6 +21,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Reals
 from porescale.coupling.coverage.overlap import overlapping
 from porescale.coupling.coverage.rectangle import Rectangle
+from porescale.coupling.coverage.ring import Ring
 from porescale.coupling.displaced import Displaced, displaced, of_whole_bodies
 from porescale.coupling.immersed import LAYER, CellLoad, Immersed, to_lattice
 from porescale.coupling.immersed_polygons import ImmersedPolygons, corners_of
@@ -64,6 +65,7 @@ class Coupled:
         lubrication: bool = False,
         film_gap: float = CELLS,
         rectangles: Sequence[Rectangle] = (),
+        rings: Sequence[Ring] = (),
         soft_rim: bool = False,
     ) -> None:
         self.fluid, self.grains, self.scales, self.contact_steps = fluid, grains, scales, contact_steps
@@ -74,7 +76,8 @@ class Coupled:
         self.polygons = ImmersedPolygons(grains, scales, acceleration) if seen.stop < discs.count else None
         self.saturated = SaturatedCells(
             fluid, self.hydraulic_radius[seen] / scales.spacing, solid_operator=solid_operator, weighting=weighting,
-            rectangles=rectangles, polygons=self.polygons.polygons if self.polygons else None, soft_rim=soft_rim,
+            rectangles=rectangles, rings=rings, polygons=self.polygons.polygons if self.polygons else None,
+            soft_rim=soft_rim,
         )  # fmt: skip
         covering = np.zeros(discs.count)
         covering[seen] = self.saturated.covering_radius * scales.spacing
@@ -163,6 +166,12 @@ class Coupled:
     def rectangle_force(self) -> Reals:
         """Force of the fluid on the rectangles, (m, 2) N/m, the fluid inside them given back."""
         return np.asarray(self.saturated.rectangle_force * self.scales.force)
+
+    @property
+    def ring_load(self) -> Reals:
+        """Force and torque of the fluid on the rings, (m, 3) N/m, N/m, N m/m, the fluid inside them given back."""
+        wet, s = self.saturated, self.scales
+        return np.column_stack((wet.ring_force * s.force, wet.ring_torque * s.torque))
 
     def fields(self) -> tuple[Reals, Reals, Reals, Reals]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx).

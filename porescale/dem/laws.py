@@ -9,7 +9,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.bodies.rigid import masses
-from porescale.dem.contact.law import COLUMNS, ContactLaw, springs_of
+from porescale.dem.contact.law import ContactLaw, springs_of
 from porescale.dem.contact.materials import Materials
 from porescale.dem.state import State
 
@@ -60,7 +60,7 @@ def surface_laws(grains: State, frictions: Sequence[float | None]) -> Floats:
     rows = [
         [(each if own is None else each.with_friction(own)).row() for each in grains.laws_at_walls] for own in frictions
     ]
-    return np.array(rows).reshape(len(rows), len(grains.laws_at_walls), COLUMNS)
+    return np.array(rows).reshape(len(rows), len(grains.laws_at_walls), len(grains.laws[0].row()))
 
 
 def _widen(grains: State, springs: int) -> None:

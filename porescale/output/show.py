@@ -40,19 +40,24 @@ def show(folder: Path) -> list[Path]:
 
 def look_of(run: Run) -> Look:
     """How pictures and films show a run, of a scene or of a deck of DEMseg."""
+    scene = run.card["scene"]
+    if "deck" in scene:
+        return _look_of_deck(run.name, scene["deck"])
+    return look_of_scene(scene, run.name)
+
+
+def look_of_scene(scene: dict[str, Any], name: str) -> Look:
+    """The look of a scene, as on a run card."""
     from porescale.common.pictures.look import Look
     from porescale.output.frame_clouds import FRAMES
     from porescale.output.frame_pictures import cracks
 
-    scene = run.card["scene"]
-    if "deck" in scene:
-        return _look_of_deck(run.name, scene["deck"])
     return Look(
-        title=title(scene, run.name),
+        title=title(scene, name),
         cloud="grains",
         label="speed of the fluid",
         lines=solid_lines(scene),
-        walls="solid_fraction" if scene.get("rectangle") else "",
+        walls="solid_fraction" if scene.get("rectangle") or scene.get("ring") else "",
         streamlines=scene.get("fluid") is not None,
         colour="velocity" if scene.get("fluid") is None else None,
         shapes=FRAMES,

@@ -30,6 +30,8 @@ class Circles(Section):
     """Entries of [[grains.grain]] from the file in a folder; registered by builders/scene.py, since pictures
     need readers of their own.  Raises InputError with keys of [grains]."""
 
+    files: ClassVar[tuple[str, ...]] = ("file",)
+
     file: str = pydantic.Field(description="file, beside the scene")
     unit: Literal["m", "cm", "mm", "um"] = pydantic.Field("m", description="unit of the columns")
     y: Literal["up", "down"] = pydantic.Field("up", description="direction of y: down in pictures")

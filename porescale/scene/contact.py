@@ -1,12 +1,16 @@
 """[contact], [[material]] and [[contact.pair]]: contact laws for all grains, for some, for two materials."""
 
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
 import pydantic
 
+from porescale.common.compiled.own import CONTACT_LAW, OwnLaw, number_of
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import choice, number
 from porescale.common.schema.messages import nearest
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.own import OWN_LAW, OrOwn, folder_of, own_law
+from porescale.common.schema.sections import Quantity, Refused, Section, quantity
 from porescale.scene.ranges import FRICTION
 
 STIFFNESS: Any = {"ge": 0, "le": 1e15}
@@ -70,10 +74,16 @@ class Material(Touch):
 class Contact(Touch):
     """The law of contacts, per metre of depth; the same between grains and at walls.
 
-    "linear": springs and dashpots;  "hertz": of Hertz and Mindlin, for spheres of the discs' radii, one a metre.
+    "linear": springs and dashpots;  "hertz": of Hertz and Mindlin, for spheres of the discs' radii, one a metre;
+    "laws.py:NAME": a function of a user's file, whose own keys stand beside the others.
     """
 
-    law: str = "linear"
+    law: Annotated[str | OwnLaw, OrOwn(CONTACT_LAW)] = pydantic.Field(
+        "linear", description='contact law, or "laws.py:NAME"'
+    )
+    own: dict[str, float] = pydantic.Field(
+        {}, description="numbers of a law of a user's file, by key; in scenes they may stand in [contact] itself"
+    )
     tangential_stiffness: float = quantity("N/m", 0.0, **STIFFNESS, help="tangential stiffness per metre of depth")
     tangential_damping: float = quantity("N s/m", 0.0, **DASHPOT, help="tangential damping per metre of depth")
     friction: float = quantity("", 0.0, **FRICTION, help="friction coefficient between grains")
@@ -89,13 +99,86 @@ class Contact(Touch):
     step: float | None = quantity(
         "s", None, ge=1e-15, le=1e3, help="contact step (default: from the contact's stability)"
     )
-    deepest: float = quantity("", 0.02, gt=0, le=0.3, help='overlap over radius that the step of "hertz" allows for')
+    deepest: float = quantity(
+        "", 0.02, gt=0, le=0.3, help='overlap over radius that the step of "hertz" and own laws allows for'
+    )
     pair: tuple[Pair, ...] = ()
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        keys, about = schema["properties"], schema["properties"]["law"]
+        ours = {**schema, "properties": {**keys, "law": choice(LAWS, about)}}
+        own = {**schema, "properties": {**keys, "law": {**OWN_LAW, "description": about["description"]}}}
+        own |= {"required": ["law"], "additionalProperties": number()}  # its numbers, by keys that only it knows
+        return {"description": schema["description"], "anyOf": [ours, own]}
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _own_keys(cls, table: Any, info: pydantic.ValidationInfo) -> Any:
+        """The numbers of an own law, in SI, as the table ``own``."""
+        if not isinstance(table, Mapping):
+            return table
+        try:
+            law = own_law(table.get("law"), CONTACT_LAW, folder_of(info))
+        except Refused:  # said of the key ``law``; whether other keys are the law's cannot be known
+            return {key: value for key, value in table.items() if key in cls.model_fields and key != "own"}
+        return table if law is None else {**_without(table, law), "own": _numbers(table, law)}
+
+    def numbers(self) -> dict[str, float]:
+        """The numbers that are given, by key, those of an own law among them."""
+        return {**super().numbers(), **self.own}
+
+    def _faults(self) -> list[Fault]:
+        if self.own and isinstance(self.law, str):
+            return [Fault("own", None, "belongs to a law of a file", repair=f'leave it out with law = "{self.law}"')]
+        return []
 
     @pydantic.field_validator("law")
     @classmethod
-    def _known(cls, name: str) -> str:
-        if name not in LAWS:
+    def _known(cls, name: str | OwnLaw) -> str | OwnLaw:
+        if isinstance(name, str) and name not in LAWS:
             allowed = " or ".join(repr(it) for it in LAWS)
             raise Refused(Fault("", name, "unknown choice", "", allowed, nearest(name, LAWS, "choices")))
         return name
+
+
+def _without(table: Mapping[str, Any], law: OwnLaw) -> dict[str, Any]:
+    """The table of [contact] without the keys that only the law has."""
+    return {key: value for key, value in table.items() if key in Contact.model_fields or key not in law.keys}
+
+
+def _numbers(table: Mapping[str, Any], law: OwnLaw) -> dict[str, float]:
+    """The numbers of the law's keys, in SI: those that only it has.  Raises Refused with all faults."""
+    own = table.get("own")
+    given = own if isinstance(own, Mapping) else {}
+    values = {**given, **{key: table[key] for key in law.keys if key in table}}
+    found, faults = {}, []
+    for key in given:
+        if key not in law.keys:
+            allowed = ", ".join(law.keys) or "none"
+            faults.append(Fault(f"own.{key}", None, f"is no key of {law.reference}", "", allowed))
+    for key, unit in law.keys.items():
+        if key in Touch.model_fields:
+            has = next(it.unit for it in Touch.model_fields[key].metadata if isinstance(it, Quantity))
+            if has != unit:
+                problem = f"{law.reference} gives it the unit {unit!r}, [contact] has it in {has!r}"
+                faults.append(Fault(key, None, problem, repair="give it the same unit, or another name"))
+            elif values.get(key) is None and Contact.model_fields[key].default is None:
+                faults.append(_missing(key, law))
+        elif key not in values:
+            faults.append(_missing(key, law))
+        else:
+            try:
+                found[key] = number_of(law, key, values[key])
+            except ValueError as error:
+                repair = f"give it in {unit}" if unit else "give it as a number"
+                shown = values[key] if isinstance(values[key], int | float | str) else None
+                faults.append(Fault(key, shown, str(error), unit, repair=repair))
+    if faults:
+        raise Refused(*faults)
+    return found
+
+
+def _missing(key: str, law: OwnLaw) -> Fault:
+    """What is said of a key that an own law needs."""
+    return Fault(key, None, f"is missing, {law.reference} needs it", law.keys[key], repair="add it to [contact]")

@@ -5,6 +5,7 @@ from typing import Any, Literal
 import pydantic
 
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import with_units, word_or
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.lbm.boundary.choose import boundaries, boundary
@@ -39,6 +40,10 @@ class Side(Section):
     stress: TimeFunction | None = None
     force: TimeFunction | None = None
     fastest: float | None = quantity("m/s", None, gt=0, le=1e4, help="largest speed under stress or force")
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        return word_or(KINDS, with_units(schema, SERVO))
 
     @pydantic.model_validator(mode="before")
     @classmethod

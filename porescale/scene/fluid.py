@@ -1,11 +1,12 @@
 """[fluid]: its numbers, its lattice, and the choice of operators by name."""
 
 from collections.abc import Collection
-from typing import Literal
+from typing import Any, Literal
 
 import pydantic
 
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import choice
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
@@ -45,6 +46,11 @@ class Fluid(Section):
     velocity: tuple[float, float] = quantity(
         "m/s", (0.0, 0.0), ge=-1e4, le=1e4, help="velocity of all of the fluid at the start"
     )
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        keys = schema["properties"]
+        return {**schema, "properties": keys | {key: choice(names, keys[key]) for key, names in CHOICES.items()}}
 
     @pydantic.field_validator("operator", "solid_operator", "weighting")
     @classmethod

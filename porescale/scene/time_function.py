@@ -1,5 +1,6 @@
 """Numbers that change with time: constant, a sine, a table; and what they prescribe of a component."""
 
+import bisect
 import itertools
 import math
 from collections.abc import Mapping
@@ -9,6 +10,7 @@ from typing import Any, ClassVar
 import pydantic
 
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import number, with_units, word_or
 from porescale.common.schema.sections import Quantity, Refused, Section, quantity
 
 LARGEST = 1e12
@@ -26,6 +28,14 @@ class TimeFunction(Section):
     phase: float = quantity("rad", 0.0, ge=-1e3, le=1e3, help="phase of the sine at time 0")
     times: tuple[float, ...] = quantity("s", (), ge=0, le=1e9, help="times of the table")
     values: tuple[float, ...] = ()
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        for key in ("mean", "amplitude"):
+            schema["properties"][key] = {**number(), "default": 0.0}
+        schema["properties"]["values"]["items"] = number()
+        pair = {"type": "array", "prefixItems": [number(), number()], "minItems": 2, "maxItems": 2}
+        return {"anyOf": [number(), {"type": "array", "items": pair}, schema]}
 
     def _faults(self) -> list[Fault]:
         if len(self.times) != len(self.values):
@@ -50,6 +60,28 @@ class TimeFunction(Section):
         pairs = list(zip(self.times, self.values, strict=True))
         slopes = [abs((b - a) / (later - time)) for (time, a), (later, b) in itertools.pairwise(pairs)]
         return max([*slopes, 2.0 * math.pi * self.frequency * abs(self.amplitude)])
+
+    def value(self, time: float) -> float:
+        """The number at ``time`` (s)."""
+        if self.times:
+            k = bisect.bisect_right(self.times, time)
+            if k in (0, len(self.times)):
+                return self.values[max(k - 1, 0)]
+            share = (time - self.times[k - 1]) / (self.times[k] - self.times[k - 1])
+            return self.values[k - 1] + share * (self.values[k] - self.values[k - 1])
+        return self.mean + self.amplitude * math.sin(2.0 * math.pi * self.frequency * time + self.phase)
+
+    def integral(self, time: float) -> float:
+        """Its exact integral from 0 to ``time`` (s), s of its unit: the way of a velocity."""
+        if self.times:
+            corners = [0.0, *(it for it in self.times if 0.0 < it < time), time]
+            # Straight between corners, so that the trapezoidal rule is exact.
+            return sum(0.5 * (b - a) * (self.value(a) + self.value(b)) for a, b in itertools.pairwise(corners))
+        if not self.amplitude:
+            return self.mean * time
+        pulsation = 2.0 * math.pi * self.frequency
+        swung = self.amplitude / pulsation * (math.cos(self.phase) - math.cos(pulsation * time + self.phase))
+        return self.mean * time + swung
 
 
 def as_table(value: Any, unit: str, help: str) -> Any:
@@ -95,6 +127,10 @@ class Timed(Section):
 
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {}
 
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        return with_units(schema, cls.UNITS)
+
     @pydantic.model_validator(mode="before")
     @classmethod
     def _time_functions(cls, table: Any) -> Any:
@@ -118,6 +154,10 @@ class Component(Section):
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {
         "velocity": ("m/s", "velocity"), "displacement": ("m", "displacement"), "force": ("N/m", "force"),
     }  # fmt: skip
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        return word_or(("free",), with_units(schema, cls.UNITS))
 
     @pydantic.model_validator(mode="before")
     @classmethod

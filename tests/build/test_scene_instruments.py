@@ -14,6 +14,7 @@ from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import scene_as_dict
 from porescale.output.lines import write_lines
+from porescale.output.rectangle_mean import RectangleMean
 from porescale.output.sample import Sampler, along, midpoints
 from tests.reference.scenes import dry, water
 
@@ -199,3 +200,69 @@ def test_formulas_of_beds():
     assert gebart(0.8) == 0.0
     assert gebart(0.8, hexagonal=True) > 0
     assert kozeny_carman(0.5) == pytest.approx(0.125 / 5, rel=1e-15)
+
+
+def slow_mean(values: Any, solid: Any, corners: Any, spacing: float, parts: int = 40) -> tuple[float, float]:
+    """Share of fluid and mean by ``parts`` x ``parts`` points in each cell, for corners on their grid."""
+    (x0, y0), (x1, y1) = corners
+    fine = np.kron(values, np.ones((parts, parts))), np.kron(1 - solid, np.ones((parts, parts)))
+    y, x = ((np.indices(fine[0].shape) + 0.5) * spacing / parts).reshape(2, *fine[0].shape)
+    inside = (x > x0) & (x < x1) & (y > y0) & (y < y1)
+    free = fine[1][inside]
+    return float(free.mean()), float((free * fine[0][inside]).sum() / free.sum())
+
+
+@pytest.mark.parametrize("corners", [((1.0, 1.0), (3.0, 2.0)), ((0.55, 0.2), (3.375, 2.85)), ((2.1, 1.2), (2.4, 1.3))])
+def test_a_mean_over_a_rectangle_weighs_the_fluid_in_it(corners):
+    random = np.random.default_rng(1)
+    values, solid = random.normal(size=(3, 4)), random.uniform(size=(3, 4)).round(1)
+    share, mean = RectangleMean(*corners, (4, 3), 1.0).of(solid, values)
+    exact = slow_mean(values, solid, corners, 1.0)
+    # Corners lie on the fine grid: sums of a few thousand numbers of order one.
+    assert (share, mean) == pytest.approx(exact, rel=1e-12)
+    plain = slow_mean(values, 0 * solid, corners, 1.0)[1]
+    assert abs(plain - mean) > 1e-3 or (np.ptp(corners, axis=0) < 1).all()  # the twin: the solid is not left out
+
+
+def test_a_mean_where_all_is_solid_is_no_number():
+    share, mean = RectangleMean((0.5, 0.5), (2.5, 1.5), (4, 3), 1.0).of(np.ones((3, 4)), np.ones((3, 4)))
+    assert share == 0.0
+    assert math.isnan(mean)
+
+
+def test_the_mean_pore_pressure_of_water_at_rest_is_that_of_the_rectangle_s_centre():
+    still = {"domain__left": "wall", "domain__right": "wall", "fluid__body_force": None, "gravity": [3.0, -9.81]}
+    x, y, width, height = 0.00371, 0.00333, 0.00417, 0.00259  # cuts cells on all sides
+    probe = {"name": "pore", "x": x, "y": y, "width": width, "height": height}
+    model = build(water(**still, probe=[probe, {"x": x, "y": y}]))
+    row = model.tables()["probes"]
+    assert list(row) == [
+        "time (s)", "probe 1 pressure (Pa)", "probe 1 velocity x (m/s)", "probe 1 velocity y (m/s)",
+        "pore mean pressure (Pa)", "pore mean velocity x (m/s)", "pore mean velocity y (m/s)", "pore fluid share ()",
+    ]  # fmt: skip
+    exact = 1000 * (9.81 * (0.008 - y) + 3.0 * x)
+    # The lattice is at rest to a rounding of its density: 1e-15 of rho c_s² = 8.3e3 Pa a cell.
+    assert row["pore mean pressure (Pa)"] == pytest.approx(exact, abs=1e-10 * 8.3e3)
+    assert row["pore fluid share ()"] == 1.0
+    assert row["probe 1 pressure (Pa)"] == pytest.approx(exact, abs=1e-10 * 8.3e3)
+    # The twin: a tenth of a cell further up is seen.
+    assert abs(row["pore mean pressure (Pa)"] - exact - 9.81e3 * 2e-5) > 0.1
+
+
+def test_the_fluid_share_leaves_a_disc_out_exactly():
+    probe = {"x": 0.004, "y": 0.004, "width": 0.0032, "height": 0.0028}
+    row = build(water(disc=[DISC], gravity=[0.0, 0.0], probe=[probe])).tables()["probes"]
+    # Areas of cells are exact to 16 roundings of the radius squared, 25 cells; a hundred cells are summed.
+    assert row["probe 0 fluid share ()"] == pytest.approx(1 - math.pi * 0.001**2 / (0.0032 * 0.0028), abs=1e-11)
+    assert row["probe 0 mean pressure (Pa)"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_rectangle_needs_both_sides_and_lies_in_the_box():
+    def said(**probe: Any) -> list[str]:
+        with pytest.raises(InputError) as caught:
+            water(probe=[{"x": 0.004, "y": 0.004, **probe}])
+        return [it.line() for it in caught.value.faults]
+
+    assert said(width=0.001)[0].startswith("probe[0].height: a rectangle needs both")
+    assert said(width=0.001, height=0.01)[0].startswith("probe[0] = '(0.0035, -0.001)': is outside the box")
+    water(probe=[{"x": 0.004, "y": 0.004, "width": 0.001, "height": 0.008}])  # the twin

@@ -11,6 +11,7 @@ from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError, PorescaleError, Unstable
 from porescale.common.evidence.benchmarks import Benchmarks, Work
 from porescale.common.evidence.validations import Measured, Validations
+from porescale.common.pictures.look import Look
 from porescale.common.schema.sections import Section, quantity
 
 
@@ -118,6 +119,7 @@ TOY = Package(
     drive=drive,
     report=report,
     show=picture,
+    look=lambda run: Look(),
     table=columns,
     validations=validations,
     benchmarks=benchmarks,

@@ -79,7 +79,8 @@ def test_a_run_of_more_than_a_week_is_warned_of(monkeypatch):
 
 
 def test_more_grains_than_the_memory_holds_are_refused_without_fluid_too(monkeypatch):
-    monkeypatch.setattr(cost.os, "sysconf", lambda name: 100)  # a machine of 10^4 bytes; 31 grains take 400 each
+    monkeypatch.setattr(cost, "ALWAYS", 0.0)
+    monkeypatch.setattr(cost, "memory_bytes", lambda: 10**4)  # 31 grains take 400 each
     assert refusals(lambda: build(dry()))[0].startswith("grains: ")
 
 

@@ -313,7 +313,8 @@ def test_a_packing_is_held_while_it_settles():
 def test_a_lattice_beyond_the_memory_is_refused_with_a_spacing_that_fits(monkeypatch):
     derived = derive(column())
     cost.require_memory(derived)
-    monkeypatch.setattr(cost.os, "sysconf", lambda name: 64)  # a machine of 4 KiB
+    monkeypatch.setattr(cost, "ALWAYS", 0.0)
+    monkeypatch.setattr(cost, "memory_bytes", lambda: 4096)
     line, *_ = refusals(lambda: cost.require_memory(derived))
     assert line.startswith("fluid.spacing = ")
     assert "takes half of the memory" in line

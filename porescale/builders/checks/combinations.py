@@ -1,9 +1,9 @@
 """Sections that do not go with each other, or need one another."""
 
 from porescale.builders.checks.polygons_in_fluid import check_in_fluid
+from porescale.builders.initial.contact_laws import law_class
 from porescale.builders.initial.walls import moving_sides, wall_names
 from porescale.common.core.errors import Fault
-from porescale.dem.contact.choose import LAWS
 from porescale.scene.domain import SIDES
 from porescale.scene.scene import Scene
 
@@ -60,8 +60,8 @@ def check_rock(scene: Scene) -> list[Fault]:
     if packing is None or packing.pressure is None:
         repair = "add [grains.packing] with pressure, or pressure to it"
         faults.append(Fault("rock", None, "is made of a packing that was pressed together", repair=repair))
-    if scene.contact and not LAWS[scene.contact.law].compresses:
-        faults.append(Fault("contact.law", scene.contact.law, "rock is bonded under the linear law", "", "linear"))
+    if scene.contact and not law_class(scene.contact).compresses:
+        faults.append(Fault("contact.law", str(scene.contact.law), "rock is bonded under the linear law", "", "linear"))
     if packing and scene.rock.gap and scene.rock.gap > 0.2 * packing.diameter:
         problem = "leaves little of polygons as large as the packing's discs"
         faults.append(Fault("rock.gap", scene.rock.gap, problem, "m", f"<= {0.2 * packing.diameter:.3g}"))

@@ -1,8 +1,9 @@
 """Contact laws: every number belongs to its law, and nothing is missing."""
 
-from porescale.builders.initial.contact_laws import merged
+from porescale.builders.initial.contact_laws import law_class, merged
 from porescale.common.core.errors import Fault
 from porescale.dem.contact.choose import LAWS
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.materials import MOST
 from porescale.scene.contact import DAMPED, Contact, Pair, Touch
 from porescale.scene.scene import Scene
@@ -23,7 +24,7 @@ def check_contact(scene: Scene) -> list[Fault]:
     sections += [(f"material[{k}]", it) for k, it in enumerate(scene.material)]
     sections += [(f"contact.pair[{k}]", it) for k, it in enumerate(contact.pair)]
     for key, section in sections:
-        faults += _check_kind(key, section, contact.law)
+        faults += _check_kind(key, section, law_class(contact))
     if faults:
         return faults
     for key, section in sections[1 : 1 + len(scene.material)] or sections[:1]:
@@ -51,18 +52,20 @@ def _check_names(scene: Scene, contact: Contact) -> list[Fault]:
     return faults
 
 
-def _check_kind(key: str, section: Touch, name: str) -> list[Fault]:
+def _check_kind(key: str, section: Touch, law: type[ContactLaw]) -> list[Fault]:
     """Every number belongs to the law."""
-    law = LAWS[name]
     plain = Contact.model_construct() if isinstance(section, Contact) else None
     faults = []
     for other in LAWS.values():
         for number in other.keys:
             value = None if number in law.keys else getattr(section, number)
             if value is not None and not (plain and value == getattr(plain, number)):
-                problem = f'belongs to law = "{other.name}", this is "{name}"'
+                problem = f'belongs to law = "{other.name}", this is "{law.name}"'
                 repair = f'leave it out, or write law = "{other.name}"'
                 faults.append(Fault(f"{key}.{number}", value, problem, repair=repair))
+    if not law.damping_keys and section.restitution is not None and "restitution" not in law.keys:
+        problem, repair = f"{law.name} has its own damping", "leave it out"
+        faults.append(Fault(f"{key}.restitution", section.restitution, problem, repair=repair))
     if isinstance(section, Pair):
         for number in {it: None for each in LAWS.values() for it in each.of_materials}:
             if getattr(section, number) is not None:
@@ -76,12 +79,12 @@ def _check_kind(key: str, section: Touch, name: str) -> list[Fault]:
 
 def _check_complete(key: str, numbers: dict[str, float], contact: Contact) -> list[Fault]:
     """Faults of a law's numbers: missing ones, and those without effect."""
-    law, faults = LAWS[contact.law], []
+    law, faults = law_class(contact), []
     needed, unit = law.required
-    if needed not in numbers:
+    if needed and needed not in numbers:
         faults.append(Fault(f"{key}.{needed}", None, "is missing", unit, "> 0", "add it"))
     ways = law.damping_keys
-    if sum(way in numbers for way in ways) != 1:
+    if ways and sum(way in numbers for way in ways) != 1:
         problem, repair = "exactly one of the two is needed", "give one, leave the other out"
         faults.append(Fault(f"{key}.{', '.join(ways)}", None, problem, repair=repair))
     wrong = law.rolling_problem(numbers)

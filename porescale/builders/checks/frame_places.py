@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.builders.checks.wall_places import across_walls
+from porescale.builders.initial.contact_laws import law_class
 from porescale.builders.initial.frames import Placed
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
-from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs
 from porescale.dem.motion.control import Control, Moved, schedule_of
@@ -82,12 +82,13 @@ def _out_of_the_box(domain: Domain, placed: Sequence[Placed]) -> list[Fault]:
 def _too_thin(contact: Contact | None, placed: Sequence[Placed]) -> list[Fault]:
     """Frames without thickness that can touch: nothing would push them apart.  Hertz's law needs one everywhere."""
     bare = [it for it in placed if it.frame.thickness == 0.0]
-    needs_radius = contact is not None and LAWS[contact.law].needs_radius
+    law = law_class(contact) if contact else None
+    needs_radius = law is not None and law.needs_radius
     if not bare or not (needs_radius or (len(bare) > 1 and any(it.free for it in bare))):
         return []
     problem = "two segments without thickness go through each other"
-    if needs_radius:
-        problem = "the law of Hertz needs a radius of corners"
+    if law and needs_radius:
+        problem = f"the law {law.name!r} needs a radius of corners"
     size = float(np.ptp(np.array(bare[0].frame.corners), axis=0).max())
     repair = f"give it one, such as {0.02 * size:.2g} m"
     return [Fault(f"{bare[0].key}.thickness", 0.0, problem, "m", "> 0", repair)]

@@ -15,6 +15,10 @@ MACH_WARN, MACH_REFUSE = 0.1, limits.MACH
 """Errors of compressibility grow as the square of the Mach number: 1 % at the first."""
 CELLS_THICK = 2.0
 """A rectangle thinner than this may fill no cell wholly, wherever it lies, and lets fluid through."""
+SOUND_WARN = 0.3
+"""Angle of an oscillation in which sound crosses the box, rad: it changes pressures by its square, a tenth."""
+RING_CELLS = 4.0
+"""Fewest cells across the hole of a ring."""
 SINGLE_PRECISION = 1e-5
 """Speed in cells per step at which the round-off of float32, 6e-8 of populations of order 0.1 and collected over a
 momentum's memory of some hundred steps, is about a hundredth of it."""

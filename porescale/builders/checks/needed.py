@@ -9,6 +9,7 @@ from porescale.builders.checks.combinations import (
     check_walls,
 )
 from porescale.builders.checks.contact import check_contact
+from porescale.builders.checks.held_places import check_ring
 from porescale.builders.initial.placed import by_hand
 from porescale.common.core.errors import Fault
 from porescale.scene.scene import Scene
@@ -69,13 +70,13 @@ def check_needed(scene: Scene) -> list[Fault]:
     if scene.permeability and scene.grains and packing is None and scene.permeability.window is None:
         repair = "add [permeability.window] with left, bottom, width, height"
         faults.append(Fault("permeability.window", None, "is needed where there is no packing", repair=repair))
-    return faults
+    return faults + check_ring(scene)
 
 
 def check_places(scene: Scene) -> list[Fault]:
     """What must lie in the box, and numbers of bodies that must exist."""
     box = scene.domain.width, scene.domain.height
-    points = [(f"probe[{k}]", (it.x, it.y)) for k, it in enumerate(scene.probe)]
+    points = [(f"probe[{k}]", at) for k, it in enumerate(scene.probe) for at in it.corners or [(it.x, it.y)]]
     for name, sections in (("line", scene.line), ("flux", scene.flux)):
         points += [(f"{name}[{k}].{end}", getattr(it, end)) for k, it in enumerate(sections)
                    for end in ("start", "end")]  # fmt: skip
@@ -98,6 +99,8 @@ def check_places(scene: Scene) -> list[Fault]:
         if not 0 <= number < len(scene.disc):
             allowed = f"0 to {len(scene.disc) - 1}" if scene.disc else "none: there is no [[disc]]"
             faults.append(Fault("loads.discs", number, "there is no such disc", "", allowed))
+    if scene.loads and scene.loads.ring and scene.ring is None:
+        faults.append(Fault("loads.ring", True, "there is no [ring]", repair="add it, or leave this out"))
     for number in scene.loads.rectangles if scene.loads else ():
         if not 0 <= number < len(scene.rectangle):
             allowed = f"0 to {len(scene.rectangle) - 1}" if scene.rectangle else "none: there is no [[rectangle]]"

@@ -1,7 +1,7 @@
 """A packing that is pressed together fills the box."""
 
+from porescale.builders.initial.contact_laws import law_class
 from porescale.common.core.errors import Fault
-from porescale.dem.contact.choose import LAWS
 from porescale.scene.packing import SAME
 from porescale.scene.scene import Scene
 
@@ -11,9 +11,9 @@ def check_compressed(scene: Scene, faults: list[Fault]) -> None:
     packing = scene.grains.packing if scene.grains else None
     if packing is None or not packing.compress or scene.rock:
         return
-    if scene.contact and not LAWS[scene.contact.law].compresses:
+    if scene.contact and not law_class(scene.contact).compresses:
         problem = "packings are compressed under the linear law only"
-        faults.append(Fault("contact.law", scene.contact.law, problem, repair='let it settle, or take "linear"'))
+        faults.append(Fault("contact.law", str(scene.contact.law), problem, repair='let it settle, or take "linear"'))
     domain = scene.domain
     for key, start, length, size in (
         ("width", packing.left, packing.width, domain.width), ("height", packing.bottom, packing.height, domain.height),

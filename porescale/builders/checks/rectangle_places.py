@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from porescale.builders.checks.held_places import path_of
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import AnyArray
 from porescale.dem.discs import Discs
+from porescale.scene.bodies.disc import Disc
 from porescale.scene.bodies.rectangle import Rectangle, travelled
 
 if TYPE_CHECKING:
@@ -178,7 +180,15 @@ def _check_discs(scene: Scene, places: AnyArray, radii: AnyArray, names: Sequenc
     held = {f"disc[{j}]": it for j, it in enumerate(scene.disc)}
     for k, it in enumerate(scene.rectangle):
         for name, place, radius in zip(names, places, radii, strict=True):
-            velocity = held[name].velocity if name in held else None
+            disc = held.get(name)
+            if disc is not None and disc.timed:
+                time = _hit(it, disc, scene.time.end)
+                if time < NEVER:
+                    problem = f"stands in rectangle {k}" if time == 0.0 else f"and rectangle {k} run into each other"
+                    faults.append(Fault(name, None, problem, repair="move one of them"))
+                    break
+                continue
+            velocity = disc.velocity if disc else None
             path = Body((0.0, 0.0), (0.0, 0.0), velocity or (0.0, 0.0))
             spans = [(0.0, 0.0)] if velocity is None else phases(it, path, scene.time.end)
             if any(nearest(it, path, place, *span) < radius * (1 - TOUCH) for span in spans):
@@ -186,6 +196,16 @@ def _check_discs(scene: Scene, places: AnyArray, radii: AnyArray, names: Sequenc
                 problem = f"stands in rectangle {k}" if at_once else f"and rectangle {k} run into each other"
                 faults.append(Fault(name, None, problem, repair="move one of them"))
                 break
+
+
+def _hit(it: Rectangle, disc: Disc, end: float) -> float:
+    """First time (s) at which a disc that functions of time move is in a rectangle; infinite if it never is."""
+    for time, at in zip(*path_of(disc, end), strict=True):
+        gone = np.asarray(it.travelled(float(time)))
+        off = at - np.clip(at, it.lower + gone, it.upper + gone)
+        if np.hypot(*off) < 0.5 * disc.diameter * (1 - TOUCH):
+            return float(time)
+    return NEVER
 
 
 def nearest(it: Rectangle, path: Body, place: AnyArray, t0: float, t1: float) -> float:

@@ -12,7 +12,9 @@ from porescale.builders.checks.limits import (
     DENSITY_WARN,
     MACH_REFUSE,
     MACH_WARN,
+    RING_CELLS,
     SINGLE_PRECISION,
+    SOUND_WARN,
     coarse,
     light,
     slow,
@@ -79,6 +81,9 @@ def given_speed(scene: Scene) -> float:
     speeds = [side.peak for side in scene.domain.sides.values()]
     speeds += [disc.fastest for disc in scene.disc] + [it.fastest for it in scene.rectangle]
     speeds += [math.hypot(it.x.fastest, it.y.fastest) for it in scene.control]
+    if scene.ring:  # what fills it turns with it up to the corners of the box
+        d, at = scene.domain, scene.ring
+        speeds.append(abs(at.spin) * math.hypot(max(at.x, d.width - at.x), max(at.y, d.height - at.y)))
     if scene.fluid:
         speeds.append(math.hypot(*scene.fluid.velocity))
     if scene.gate and scene.gate.lift_speed:
@@ -162,6 +167,14 @@ def check_regime(
     _check_mach(scales, speed, faults, warnings)
     _check_operator(scene, scales, speed, sizes, warnings)
     _check_thickness(scene.rectangle, scales, warnings)
+    _check_sound(scene, scales, warnings)
+    if scene.ring and scene.ring.diameter < RING_CELLS * scales.spacing:
+        repair = f"a spacing of {scene.ring.diameter / RING_CELLS:.2g} m gives it so many"
+        cells, allowed = (
+            f"is {scene.ring.diameter / scales.spacing:.3g} cells wide",
+            f">= {RING_CELLS * scales.spacing:g}",
+        )
+        faults.append(Fault("ring.diameter", scene.ring.diameter, cells, "m", allowed, repair))
     if sizes is None:
         return 0.0
     assert scene.fluid
@@ -202,7 +215,7 @@ def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | N
             f"fluid.magic = {fluid.magic:g} is not used: the operator {fluid.operator!r} has no such parameter"
         )
     default = type(fluid).model_fields["solid_operator"].default
-    if sizes is None and not scene.rectangle and (fluid.solid_operator != default or fluid.weighting):
+    if sizes is None and not (scene.rectangle or scene.ring) and (fluid.solid_operator != default or fluid.weighting):
         warnings.append("fluid.solid_operator and fluid.weighting are not used: there is nothing solid in the fluid")
     if fluid.solid_operator in HELD_ONLY and scene.grains is not None:
         warnings.append(
@@ -225,6 +238,18 @@ def _check_thickness(sections: Sequence[Rectangle], scales: Scales, warnings: li
             warnings.append(
                 f"rectangle {k} is {thinnest / scales.spacing:.3g} cells thick: below {CELLS_THICK:g} it may fill no"
                 f" cell and lets fluid through; a spacing of {thinnest / CELLS_THICK:.2g} m fills some"
+            )
+
+
+def _check_sound(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Discs that swing so fast that their sound does not cross the box at once."""
+    for k, it in enumerate(scene.disc):
+        fastest = max((fn.frequency for fn in (it.velocity_x, it.velocity_y) if fn), default=0.0)
+        turn = 2 * math.pi * fastest * max(scene.domain.width, scene.domain.height) / scales.sound_speed
+        if turn > SOUND_WARN:
+            warnings.append(
+                f"disc {k} swings at {fastest:.3g} Hz, by {turn:.2g} rad while sound crosses the box: pressures lag by"
+                f" as much; a step of {scales.step * 0.9 * SOUND_WARN / turn:.2g} s keeps it below {SOUND_WARN}"
             )
 
 

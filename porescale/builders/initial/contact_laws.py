@@ -2,11 +2,20 @@
 
 from dataclasses import dataclass
 
+from porescale.common.compiled.own import OwnLaw
+from porescale.common.compiled.own_kernel import kernel_of
 from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.materials import Materials
+from porescale.dem.contact.own import own_contact
 from porescale.scene.contact import DAMPED, Contact, Material, Touch
 from porescale.scene.scene import Scene
+
+
+def law_class(contact: Contact) -> type[ContactLaw]:
+    """The class of the law of [contact]: of the register, or made of a user's function."""
+    law = contact.law
+    return own_contact(law.reference, kernel_of(law.function), law.keys) if isinstance(law, OwnLaw) else LAWS[law]
 
 
 def merged(contact: Contact, own: Touch | None = None) -> dict[str, float]:
@@ -20,7 +29,7 @@ def merged(contact: Contact, own: Touch | None = None) -> dict[str, float]:
 
 def law_of(numbers: dict[str, float], contact: Contact, mass: float) -> ContactLaw:
     """The law of ``numbers``; a restitution that depends on the mass is that of two grains of ``mass`` (kg/m)."""
-    return LAWS[contact.law].from_numbers(numbers, contact.release, mass, contact.deepest)
+    return law_class(contact).from_numbers(numbers, contact.release, mass, contact.deepest)
 
 
 @dataclass(frozen=True)

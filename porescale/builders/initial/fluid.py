@@ -8,6 +8,7 @@ import numpy as np
 from porescale.builders.derive import Derived
 from porescale.builders.initial.fluid_options import collision_options, solid_options
 from porescale.builders.initial.frames import disc_count
+from porescale.builders.initial.ring import on_the_lattice
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.step import Coupled
 from porescale.dem.grains import Grains
@@ -61,8 +62,10 @@ def coupled_of(
     if scene.grains and scene.grains.hydraulic_radius_ratio:
         ratio[: disc_count(grains) - len(scene.disc)] = scene.grains.hydraulic_radius_ratio
     films = scene.lubrication
+    rings = [on_the_lattice(scene.ring, derived.scales)] if scene.ring else []
     return Coupled(
         fluid, grains, derived.scales, hydraulic_ratio=ratio, contact_steps=derived.contact_steps or 1,
         acceleration=scene.gravity, **solid_options(scene.fluid),
         lubrication=films is not None, film_gap=films.gap if films else 1.0, rectangles=rectangles,
+        rings=rings,
     )  # fmt: skip

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.api.fields import Field
 from porescale.common.core.types import Reals
 from porescale.lbm.fields import stream_function
 from porescale.lbm.fluid import Fluid
@@ -62,6 +63,25 @@ def derived_fields(
         centres = 0.25 * (psi[1:, 1:] + psi[1:, :-1] + psi[:-1, 1:] + psi[:-1, :-1])
         fields["stream_function"] = (centres * scales.velocity * scales.spacing).astype(np.float32)
     return fields
+
+
+def all_fields(
+    gravity: tuple[float, float], scales: Scales, fluid: Fluid, excess: Reals, ux: Reals, uy: Reals, solid: Reals
+) -> dict[str, Field]:
+    """Every field of a fluid by name: speed and velocity (m/s), pressure (Pa), solid fraction, and those of UNITS.
+
+    gravity : m/s²;  excess : of density, kg/m³;  ux, uy : m/s;  solid : fraction; each (ny, nx).
+    """
+    more = derived_fields(list(UNITS), fluid, ux, uy, scales)
+    return {
+        "speed": Field(np.hypot(ux, uy), "m/s"),
+        "velocity_x": Field(np.array(ux), "m/s"),
+        "velocity_y": Field(np.array(uy), "m/s"),
+        "pressure": Field(total_pressure(gravity, scales, excess), "Pa"),
+        "density": Field(scales.density + excess, "kg/m³"),
+        "solid_fraction": Field(np.array(solid), ""),
+        **{name: Field(more[name], unit) for name, unit in UNITS.items()},
+    }
 
 
 def vorticity(ux: Reals, uy: Reals, spacing: float) -> Reals:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from porescale.builders.initial.frames import disc_count
 from porescale.builders.parts.flow_fields import ratio_column, total_pressure
 from porescale.builders.parts.fluid import FluidPart
 from porescale.builders.stepper import Fields, Row
@@ -11,6 +12,7 @@ from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
 from porescale.common.record.part import Part
 from porescale.coupling.step import Coupled
+from porescale.output.rectangle_mean import RectangleMean
 from porescale.output.sample import Sampler, midpoints
 from porescale.scene.measures.line import Flux
 from porescale.scene.measures.loads import Loads
@@ -25,8 +27,14 @@ class FlowInstruments(Part):
         assert derived.cells
         self.clock, self.fluid, self.gravity = system.clock, fluid, scene.gravity
         grid = derived.cells, fluid.scales.spacing, scene.domain.periodic
-        self.probes = Sampler([(it.x, it.y) for it in scene.probe], *grid) if scene.probe else None
-        self.probe_names = [it.name or f"probe {k}" for k, it in enumerate(scene.probe)]
+        names = [it.name or f"probe {k}" for k, it in enumerate(scene.probe)]
+        points = [(name, it) for name, it in zip(names, scene.probe, strict=True) if it.corners is None]
+        self.probes = Sampler([(it.x, it.y) for _, it in points], *grid) if points else None
+        self.probe_names = [name for name, _ in points]
+        self.means = {
+            name: RectangleMean(*it.corners, *grid[:2])
+            for name, it in zip(names, scene.probe, strict=True) if it.corners
+        }  # fmt: skip
         self.fluxes = [_Section(it, k, fluid.scales.spacing, grid) for k, it in enumerate(scene.flux)]
         self.coupled = system.coupled
         self.loads = Loading(scene.loads, system.coupled, system.held) if scene.loads and system.coupled else None
@@ -35,8 +43,9 @@ class FlowInstruments(Part):
     def tables(self) -> dict[str, Row]:
         """A row of every table that the scene has a section for."""
         first, fields, tables = {"time (s)": self.clock.time} | self.first, self.fluid.fields(), {}
-        if self.probes:
-            tables["probes"] = first | self._probe_row(self.probes, fields)
+        if self.probes or self.means:
+            points = self._probe_row(self.probes, fields) if self.probes else {}
+            tables["probes"] = first | points | self._mean_row(fields)
         if self.fluxes:
             tables["flux"] = first | self._flux_row(fields)
         if self.loads:
@@ -55,6 +64,22 @@ class FlowInstruments(Part):
             row[f"{name} pressure (Pa)"] = float(p[k])
             row[f"{name} velocity x (m/s)"] = float(u[k])
             row[f"{name} velocity y (m/s)"] = float(v[k])
+        return row
+
+    def _mean_row(self, fields: Fields) -> Row:
+        """Means over the fluid in rectangles; the hydrostatic part is exact where they cut cells, too."""
+        excess, ux, uy, solid = fields
+        (gx, gy), s = self.gravity, self.fluid.scales
+        top = excess.shape[0] * s.spacing
+        row = {}
+        for name, it in self.means.items():
+            still = s.density * (gx * it.x[None, :] - gy * (top - it.y[:, None]))
+            pressure = excess[it.where] / s.density * s.pressure + still
+            share, p, u, v = it.of(solid, pressure, ux, uy)
+            row[f"{name} mean pressure (Pa)"] = p
+            row[f"{name} mean velocity x (m/s)"] = u
+            row[f"{name} mean velocity y (m/s)"] = v
+            row[f"{name} fluid share ()"] = share
         return row
 
     def _flux_row(self, fields: Fields) -> Row:
@@ -87,7 +112,7 @@ class _Section:
 
 
 class Loading:
-    """Loads of the fluid on chosen bodies.  held : discs that are held, the last ones."""
+    """Loads of the fluid on chosen bodies.  held : discs that are held, the last ones before corners of frames."""
 
     def __init__(self, loads: Loads, coupled: Coupled, held: int) -> None:
         self.loads, self.coupled, self.held = loads, coupled, held
@@ -99,7 +124,7 @@ class Loading:
         solves for the reduced pressure).
         """
         loads, coupled = self.loads, self.coupled
-        grains = coupled.grains.discs.count - self.held
+        grains = disc_count(coupled.grains) - self.held
         row: Row = {}
         bodies = [(f"disc {k}", grains + k) for k in loads.discs] + [(f"grain {k}", k) for k in loads.grains]
         length = math.hypot(*loads.direction)
@@ -113,7 +138,11 @@ class Loading:
                 unit = 0.5 * coupled.scales.density * loads.speed**2 * loads.length
                 row[f"{name} drag coefficient ()"] = (fx * ex + fy * ey) / unit
                 row[f"{name} lift coefficient ()"] = (fy * ex - fx * ey) / unit
-        return row | rectangle_loads(loads.rectangles, coupled)
+        row |= rectangle_loads(loads.rectangles, coupled)
+        if loads.ring:
+            fx, fy, torque = (float(value) for value in coupled.ring_load[0])
+            row |= {"ring force x (N/m)": fx, "ring force y (N/m)": fy, "ring torque (N m/m)": torque}
+        return row
 
 
 def rectangle_loads(numbers: Sequence[int], coupled: Coupled) -> Row:

@@ -26,7 +26,7 @@ class Row:
     note: str = ""
 
 
-@dataclass
+@dataclass(repr=False)
 class Report:
     """Rows under headings, in the order they were added, and warnings.
 
@@ -55,6 +55,33 @@ class Report:
         """JSON-able: ``{"title", "groups": {heading: [{"name", "value", "unit", "note"}]}, "warnings"}``."""
         groups = {name: [asdict(row) for row in rows] for name, rows in self.groups.items()}
         return {"title": self.title, "groups": groups, "warnings": list(self.warnings)}
+
+    def __repr__(self) -> str:
+        rows = sum(len(group) for group in self.groups.values())
+        many = len(self.warnings)
+        words = [f"{rows} values", *([f"{many} warning{'s' * (many > 1)}"] if many else [])]
+        return f"Report {self.title!r}: {', '.join(words)}; show() prints it"
+
+    def __str__(self) -> str:
+        from io import StringIO
+
+        from rich.console import Console
+
+        text = StringIO()
+        self.show(Console(file=text, width=120))
+        return text.getvalue().rstrip()
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        from porescale.common.core.html import html_table
+
+        tables = (
+            html_table(name, (), [[row.name, shown(row.value), row.unit, row.note] for row in rows])
+            for name, rows in self.groups.items()
+        )
+        doubts = "".join(f"<p><b>warning:</b> {escape(text)}</p>" for text in self.warnings)
+        return f"<p><b>{escape(self.title)}</b></p>{''.join(tables)}{doubts}"
 
     def show(self, console: Console | None = None) -> None:
         """Print the report, a table per heading, warnings last."""

@@ -31,14 +31,17 @@ def run(
     from porescale.common.api.simulation import BaseSimulation
 
     model = given if isinstance(given, BaseSimulation) else None
-    scene = given if model is None else model.scene
+    scene: Any = given if model is None else model.scene
     if not isinstance(scene, program.scene()):
         problem, repair = f"is no scene of {program.name}", "give a scene, or what build makes of one"
         raise InputError(Fault("scene", type(given).__name__, problem, repair=repair))
     if model is not None:
         _require_start(model)
     card = card_of_scene(program, scene)
-    folder = named_folder(out, card["name"], IN_PYTHON.out)
+    if model is not None and model.hooks:
+        card["hooks"] = {name: hook.on_card() for name, hook in model.hooks.items()}
+    folder = named_folder(out, card["name"] or "scene", IN_PYTHON.out)
+    card["name"] = card["name"] or folder.resolve().name
     check_folder(folder, program.name, resume=resume, overwrite=overwrite, words=IN_PYTHON)
     report = program.report(scene)  # what contradicts itself is refused
     if resume:

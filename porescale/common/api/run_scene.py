@@ -79,6 +79,7 @@ def _completing(
 
 def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
     """The entries of a run card that describe the request."""
+    from porescale.common.schema.own import on_card
     from porescale.common.schema.sections import scene_as_dict
 
     return {
@@ -88,20 +89,23 @@ def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
         "scene_file": str(opened.file.resolve()),
         "quality": opened.quality,
         "settings": list(opened.settings),
+        **on_card(opened.scene),
     }
 
 
-def card_of_scene(program: Program, scene: Section) -> dict[str, Any]:
+def card_of_scene(program: Program, scene: Any) -> dict[str, Any]:
     """`card_of` of a scene by itself: what it knows of where it comes from."""
+    from porescale.common.schema.own import on_card
     from porescale.common.schema.sections import scene_as_dict
 
-    source = getattr(scene, "source", None)
-    file = source.file if source else None
+    source = scene.source
+    file = source.file
     return {
         "package": program.name,
-        "name": (source.name if source else "") or program.module,
+        "name": source.name,
         "scene": scene_as_dict(scene),
         "scene_file": str(file.resolve()) if file else None,
-        "quality": source.quality if source else None,
-        "settings": list(source.settings) if source else [],
+        "quality": source.quality,
+        "settings": list(source.settings),
+        **on_card(scene),
     }

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import time as clock
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from porescale.common.api.hooks import EveryHook, ForceFunction, ForceHook, Hook, SampleFunction, when
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.columns import Columns
 from porescale.common.record.model import variable_step
+from porescale.common.record.record import MADE_LATER
 from porescale.common.record.schedule import CHECK_EVERY, SLACK, block
 from porescale.common.record.stop import polite_stop
 
@@ -19,15 +25,20 @@ if TYPE_CHECKING:
     from porescale.common.record.part import Part
     from porescale.common.record.progress import Watch
 
+FILES = ("series", *(name.removesuffix(".csv") for name in MADE_LATER if name.endswith(".csv")))
+"""Tables that a run writes anyway."""
+
 
 class BaseSimulation(ABC):
     """A `Model` of a scene that is run, looked at and changed from Python.
 
-    scene : what it was built from;  parts : what it consists of, in the order of their columns.
+    scene : what it was built from;  parts : what it consists of, in the order of their columns;  hooks : functions
+    that are called while it runs, by name.
     """
 
     scene: Any
     parts: list[Part]
+    hooks: Mapping[str, Hook] = MappingProxyType({})
 
     @property
     @abstractmethod
@@ -97,8 +108,83 @@ class BaseSimulation(ABC):
 
     @property
     def name(self) -> str:
-        """What the simulation is called in progress and pictures: the title of its scene."""
-        return self.scene.title or type(self.scene).__module__.partition(".")[0]
+        """What the simulation is called in progress and pictures: title or name of its scene."""
+        return str(self.scene.title or self.scene.name or "scene")
+
+    def force(self, function: ForceFunction) -> ForceFunction:
+        """Decorator: a force on every grain or particle, ``function(time, positions, velocities, out)``.
+
+        It is called once a step (of the fluid; of contacts where grains are dry) with the time (s), positions (n, 2) m
+        and velocities (n, 2) m/s in the order of `positions`, read-only, and ``out`` (n, 2), zero, into which it writes
+        N per metre of depth.  What it writes is added to weight and fluid; for grains that are held it is left out, and
+        bodies of segments have none.  Several forces add up; one of the same name takes the other's place.  It must
+        follow from its arguments alone for a run to be gone on with bit for bit.  InputError where there is nothing to
+        move.
+        """
+        hook = ForceHook(function)
+        self._require_free_name(hook)
+        self._add_force(hook, self.hooks.get(hook.name))
+        self.hooks = {**self.hooks, hook.name: hook}
+        return function
+
+    @abstractmethod
+    def _add_force(self, hook: ForceHook, instead_of: Hook | None) -> None:
+        """Let a hook act from the next step on, in place of another one if given."""
+
+    def _check_forces(self) -> None:
+        """Raise Unstable where a hook gave what is no number: it is the cause of what follows."""
+        for hook in self.hooks.values():
+            if isinstance(hook, ForceHook):
+                hook.check(self.step, self.time)
+
+    def every(
+        self, seconds: float | None = None, *, steps: int | None = None
+    ) -> Callable[[SampleFunction], SampleFunction]:
+        """Decorator: ``function(sim)`` is called at time 0, at multiples of an interval and at the end of a run.
+
+        seconds : interval, s;  steps : interval in steps.  A dict of numbers that it returns is a row of a table:
+        `records`, and <name of the function>.csv in a run folder, with "time (s)" as the first column.  It is called by
+        `run`, not by `advance`, and must only measure.  One of the same name takes the other's place.
+        """
+        interval = seconds, steps, None if variable_step(self) else self.step_seconds
+        when(*interval)  # what is wrong with it is said at once
+
+        def add(function: SampleFunction) -> SampleFunction:
+            """Add the hook; the function stays as it is."""
+            text, schedule = when(*interval)
+            hook = EveryHook(function, self, text, schedule)
+            self._require_free_name(hook)
+            if hook.name in FILES or hook.name in self.tables():
+                raise hook.fault(f"would write {hook.name}.csv, which the run writes", "give it another name")
+            if self.step and schedule.ratio is None:  # the first event is after now
+                schedule.restore({"interval": math.nan, "done": -1}, self.time)
+            self.hooks = {**self.hooks, hook.name: hook}
+            return function
+
+        return add
+
+    def _require_free_name(self, hook: Hook) -> None:
+        """InputError where a hook of another kind has the name."""
+        other = self.hooks.get(hook.name)
+        if other is not None and other.kind != hook.kind:
+            raise hook.fault(f"is the name of another hook ({other.kind})", "give it another name")
+
+    @property
+    def samplers(self) -> list[EveryHook]:
+        """The hooks that are called now and then."""
+        return [hook for hook in self.hooks.values() if isinstance(hook, EveryHook)]
+
+    @property
+    def records(self) -> dict[str, Columns]:
+        """What hooks of `every` have given so far, by the name of the hook: columns by name, each (rows,)."""
+        return {
+            hook.name: Columns({name: np.array(values) for name, values in hook.columns.items()}, hook.name)
+            for hook in self.samplers
+        }
+
+    def tables(self) -> dict[str, dict[str, float]]:
+        """A row of each further table that the scene asks for."""
+        return {}
 
     def run(
         self,
@@ -151,7 +237,8 @@ class BaseSimulation(ABC):
 
     def _go_on(self, end: float | None, last: int | None, watch: Watch | None) -> None:
         """Blocks of steps to the end, with checks; between them the state is whole."""
-        rate = 0.0
+        rate, samplers = 0.0, self.samplers
+        schedules = [it.schedule for it in samplers]
 
         def ended() -> bool:
             """Whether the end is reached."""
@@ -159,20 +246,30 @@ class BaseSimulation(ABC):
                 return self.step >= last
             return end is None or self.time >= end - SLACK * abs(end)
 
+        def sample(*, scheduled: bool) -> None:
+            """Call the hooks that are due, or all that were not called at the end."""
+            for it in samplers:
+                if it.schedule.due(self.step, self.time) if scheduled else it.last_step != self.step:
+                    it.sample(scheduled=scheduled)
+
         with polite_stop() as stop:
+            if self.step == 0 and any(it.last_step < 0 for it in samplers):
+                sample(scheduled=True)
             while not ended():
                 began, before = clock.perf_counter(), self.step
-                self.advance(block(self, last, (), rate))
+                self.advance(block(self, last, schedules, rate))
                 rate = (self.step - before) / max(clock.perf_counter() - began, 1e-9)
                 if watch is not None:
                     watch.update(self.step, self.time)
                 if self.step % CHECK_EVERY == 0:
                     self.check()
+                sample(scheduled=True)
                 if stop and not ended():
                     self.check()
                     where = f"stopped at step {self.step} (t = {self.time:.6g} s)"
                     raise KeyboardInterrupt(f"{where}; the simulation can be gone on with")
         self.check()
+        sample(scheduled=False)
 
 
 def absent(what: str, lacks: str, repair: str = "") -> InputError:

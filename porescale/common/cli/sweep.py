@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -14,6 +13,7 @@ from porescale.common.cli.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.studies.sweep import check_points, expected, run_points
 
 if TYPE_CHECKING:
     from porescale.common.studies.parameter_table import Point
@@ -56,16 +56,12 @@ def command(package: Package) -> Callable[..., int]:
         points = chosen_points(table, vary or ())
         file, name = check_points(package, start, points, quality, settings or ())
         folder = output_folder(out, f"{name}_sweep")
-        campaign = Campaign(module_of(package), file, folder, tuple(settings or ()), quality, threads or 1, again)
+        campaign = Campaign(package.module, file, folder, tuple(settings or ()), quality, threads or 1, again)
         jobs = enlist(campaign, jobs, scheduler)
-        rows, ends, order = expected(file), [], {point.name: at for at, point in enumerate(points)}
         varying = [word for text in vary or () for word in ("--vary", text)]
         words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying]
         command_line = shlex.join([*words, *laid_over(quality, settings)])
-        for ended in campaign.all(points, jobs, say):
-            ends.append(ended)
-            ends.sort(key=lambda one: order[one.point.name])
-            sweep_files.write(folder, command_line, ends, rows or columns_at_end(package, ends), package.table)
+        ends = run_points(package, campaign, points, jobs, expected(file), command_line, say)
         print(f"{folder / sweep_files.NAME}.csv, .md, .png")
         return conclude(ends)
 
@@ -85,27 +81,6 @@ def chosen_points(table: Path | None, vary: Sequence[str]) -> list[Point]:
     return crossed(points, options) if options else points
 
 
-def check_points(
-    package: Package, scene: Path, points: Sequence[Point], quality: str | None, settings: Sequence[str]
-) -> tuple[Path, str]:
-    """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs."""
-    from porescale.common.schema.sections import open_scene
-
-    faults: dict[str, Fault] = {}  # by what they say: what is wrong with every point is said of the first
-    for point in points:
-        try:
-            overrides = (*settings, *point.settings)
-            opened = open_scene(scene, package.scene(), quality=point.quality or quality, overrides=overrides)
-            package.report(opened.scene)
-        except InputError as error:
-            for fault in error.faults:
-                place = f"{point.name}, {fault.file}" if fault.file else point.name
-                faults.setdefault(fault.line(), replace(fault, file=place))
-    if faults:
-        raise InputError(list(faults.values()))
-    return opened.file, opened.name
-
-
 def laid_over(quality: str | None, settings: Sequence[str] | None) -> list[str]:
     """The options of quality and settings as they were written."""
     level = ["--quality", quality] if quality else []
@@ -122,42 +97,6 @@ def enlist(campaign: Campaign, jobs: int, scheduler: str | None) -> int:
 
     campaign.run, slots = connect(scheduler, campaign.module)
     return slots
-
-
-def module_of(package: Package) -> str:
-    """Name of the module that ``python -m`` runs for the package."""
-    return package.name.replace("-", "_")
-
-
-def expected(scene: Path) -> list[dict[str, Any]]:
-    """The rows of expected.toml beside the scene file that name a number to read, none where there is none.
-
-    Raises InputError with what is wrong with any of them.
-    """
-    from porescale.common.schema.scene_file import read
-    from porescale.common.studies.quantities import wrong
-
-    file = scene.parent / "expected.toml"
-    if not file.is_file():
-        return []
-    rows = read(file).get("expected", [])
-    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        repair = "write [[expected]]"
-        raise InputError(Fault("expected", None, "is not a list of tables", repair=repair, file=str(file)))
-    readable = [row for row in rows if {"name", "column", "at"} <= row.keys()]
-    faults = [Fault(f"expected {row['name']!r}", None, it, file=str(file)) for row in readable if (it := wrong(row))]
-    if faults:
-        raise InputError(faults)
-    return readable
-
-
-def columns_at_end(package: Package, ends: Sequence[Ended]) -> list[dict[str, Any]]:
-    """How every column of the series ends, in the first point that has one."""
-    for ended in ends:
-        if ended.outcome == "finished":
-            names = list(package.table(ended.folder, "series"))[1:]
-            return [{"name": name, "column": name, "at": "end"} for name in names]
-    return []
 
 
 def conclude(ends: Sequence[Ended]) -> int:

@@ -15,13 +15,12 @@ from porescale.common.cli.sweep import (
     Again,
     Jobs,
     Scheduler,
-    check_points,
     conclude,
     enlist,
     laid_over,
-    module_of,
 )
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.studies.sweep import check_points
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -63,7 +62,7 @@ def command(package: Package) -> Callable[..., int]:
         points = [*truth, *(point for group in groups for point in group)]
         file, name = check_points(package, start, points, None, settings or ())
         folder = output_folder(out, f"{name}_trade")
-        campaign = Campaign(module_of(package), file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
+        campaign = Campaign(package.module, file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
         slots = enlist(campaign, jobs, scheduler)
         ends = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
         if code := conclude([ends[point.name] for point in truth]):

@@ -30,7 +30,7 @@ from numba.core.errors import NumbaWarning
 from numba.extending import intrinsic, overload
 
 from porescale.common.compiled.cache import keep_only_used, mark_used, writable
-from porescale.common.compiled.jit import GIVEN, cache_folder, prange, prefetch, thread, unchecked_view
+from porescale.common.compiled.jit import GIVEN, body_for, cache_folder, prange, prefetch, thread, unchecked_view
 from porescale.common.compiled.kernel_key import Unknown, key_of, warning
 
 # A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
@@ -173,7 +173,7 @@ def choose_law_function(chosen: Callable[..., Any], bodies: dict[type, Any]) -> 
 
     def choose(*types: Any) -> Any:
         """The body for the types of the arguments."""
-        body = bodies.get(getattr(types[-1], "instance_class", type(None)))
+        body = body_for(bodies, getattr(types[-1], "instance_class", type(None)))
         return None if body is None else body.compiled.py_func
 
     overload(chosen, strict=False, jit_options=_INLINED)(choose)

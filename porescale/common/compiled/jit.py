@@ -11,7 +11,7 @@ see kernel_key.py.  An edit compiles anew the kernels that contain what was edit
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property, update_wrapper
 from importlib import import_module
 from pathlib import Path
@@ -136,18 +136,19 @@ def law_function(signature: F) -> Any:
     """Make an inline kernel whose body depends on the type of its last argument, the law: a NamedTuple of numbers.
 
     A sweep that takes a law and passes it on is compiled once for each law in use, and kept on disk, which it is not
-    for functions as arguments.  ``signature`` lends name and docstring; ``@name.of(Law, ...)`` adds a body.  A law must
-    be flat: loops over threads take no tuples within tuples.
+    for functions as arguments.  ``signature`` lends name and docstring; ``@name.of(Law, ...)`` adds a body, for laws
+    derived from ``Law``, too, that have none of their own.  A law must be flat: loops over threads take no tuples
+    within tuples.
     """
     bodies: dict[type, Any] = {}
 
     def chosen(*arguments: Any) -> Any:
         """The body for the type of the last argument, on these arguments."""
-        return bodies[type(arguments[-1])](*arguments)
+        return body_for(bodies, type(arguments[-1]))(*arguments)
 
     def plain(*arguments: Any) -> Any:
         """The function for the given law in plain Python."""
-        return bodies[type(arguments[-1])].py_func(*arguments)
+        return body_for(bodies, type(arguments[-1])).py_func(*arguments)
 
     def of(*laws: type) -> Callable[[F], F]:
         """Take the decorated function as body for ``laws``; returns it compiled."""
@@ -163,6 +164,11 @@ def law_function(signature: F) -> Any:
     vars(chosen).update(__name__=signature.__name__, __doc__=signature.__doc__, of=of, py_func=plain, meaning=bodies)
     when_compiling(lambda machine: machine.choose_law_function(chosen, bodies))
     return chosen
+
+
+def body_for(bodies: Mapping[type, Any], law: type) -> Any:
+    """The body for a type of law, or for the nearest type that it is derived from; None where there is none."""
+    return next((bodies[it] for it in law.__mro__ if it in bodies), None)
 
 
 def precision_constants(build: Callable[[type], Any]) -> Any:

@@ -18,7 +18,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from porescale.common.compiled.jit import Kernel
+from porescale.common.compiled.jit import Kernel, body_for
 
 LIBRARIES = frozenset({*sys.stdlib_module_names, "numpy", "numba", "llvmlite"}) - {"__main__"}
 """Packages whose functions and types are known by their names; their versions belong to ``surroundings``."""
@@ -165,9 +165,10 @@ class _Content:
         while open_ := [(k, law) for k in self.choices for law in self.laws if (k, law) not in done]:
             for at, law in open_:
                 done.add((at, law))
-                if law in self.choices[at]:
+                body = body_for(self.choices[at], law)
+                if body is not None:
                     self.put("body", law.__qualname__)
-                    self.add(self.choices[at][law])
+                    self.add(body)
 
 
 OVERLOADED = frozenset(f"{__package__}.{name}" for name in ("jit", "simd"))

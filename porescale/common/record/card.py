@@ -6,7 +6,7 @@ import math
 import platform
 import subprocess
 import sys
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ import numpy as np
 
 from porescale.common.compiled import jit
 from porescale.common.core.atomic import write_text
+from porescale.common.core.errors import Fault
 from porescale.common.core.machine import machine as machine
 from porescale.common.core.version import VERSION
 from porescale.common.record.read_card import FORMAT
@@ -133,6 +134,18 @@ def changed_keys(old: Any, new: Any, free: Collection[str] = FREE, place: str = 
             found |= changed_keys(old.get(key), new.get(key), free, below)
         return found
     return {} if old == new else {place: (old, new)}
+
+
+def changed_laws(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Fault]:
+    """Own laws of a run card that are others on a ``new`` one."""
+    before, now = old.get("laws") or {}, new.get("laws") or {}
+    return [
+        Fault(
+            key, law["law"], f"has changed since the run began (hash {before[key]['hash']}, now {law['hash']})",
+            repair="start another run; the text that the run has is on its card",
+        )
+        for key, law in now.items() if key in before and law["hash"] != before[key]["hash"]
+    ]  # fmt: skip
 
 
 def has_key(scene: Any, key: str) -> bool:

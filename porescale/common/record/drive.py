@@ -16,6 +16,7 @@ from porescale.common.record.model import Model, variable_step
 from porescale.common.record.progress import Watch
 from porescale.common.record.record import CHECKPOINT, Gone, Record, Today, check_changes
 from porescale.common.record.resume import how_far, require_same_run
+from porescale.common.record.sampler import Sampler, samplers_of
 from porescale.common.record.schedule import CHECK_EVERY, SLACK, Schedule, block, positive
 from porescale.common.record.stop import Interrupted, StopRequest, polite_stop
 
@@ -80,12 +81,16 @@ def drive(
         "series": Schedule(positive("series_interval", series_interval, endless=True), step_seconds),
         "snapshots": Schedule(positive("snapshot_interval", snapshot_interval, endless=True), step_seconds),
     }
+    samplers = samplers_of(model)
+    for sampler in samplers:
+        sampler.restart()
+        schedules[f"every {sampler.name}"] = sampler.schedule
     folder.mkdir(parents=True, exist_ok=True)
     with owned(folder) as held:
         if not held:
             raise folder_in_use(folder)
         clean(folder)
-        run = _Run(model, duration, step_seconds, schedules, checkpoint_seconds, meanwhile)
+        run = _Run(model, duration, step_seconds, schedules, samplers, checkpoint_seconds, meanwhile)
         name = str(card.get("name") or folder.name)
         resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
         if resume:
@@ -115,12 +120,13 @@ def check_resume(folder: Path, card: dict[str, Any], today: Today | None = None)
 
 @dataclass
 class _Run:
-    """Model, duration (s) and schedules that the loop over steps works with."""
+    """Model, duration (s), schedules and samplers that the loop over steps works with."""
 
     model: Model
     duration: float
     step_seconds: float | None
     schedules: dict[str, Schedule]
+    samplers: list[Sampler]
     checkpoint_seconds: float
     meanwhile: Callable[[Path], object] | None = None
 
@@ -161,7 +167,10 @@ def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], ob
             record.close_series()
             stopped = isinstance(error, KeyboardInterrupt)
             outcome = cards.INTERRUPTED if stopped else cards.FAILED
-            record.conclude(model, outcome, f"{type(error).__name__}: {error}")
+            notes = getattr(error, "__notes__", [])  # which function of the user's raised it
+            record.conclude(model, outcome, "; ".join([f"{type(error).__name__}: {error}", *notes]))
+            if notes:
+                error.add_note(record.last_good())
         raise
     speed = (model.step - first) / spent if spent > 0 else 0.0
     seconds, count = record.seconds(), record.snapshots
@@ -198,6 +207,9 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> float:
         record.row(model, scheduled=False)
     if record.snapshot_step != model.step:
         record.snapshot(model, scheduled=False)
+    for sampler in run.samplers:
+        if record.sample_steps.get(sampler.name) != model.step:
+            record.sample(model, sampler, scheduled=False)
     record.save(model, run.schedules)
     return spent
 
@@ -215,14 +227,17 @@ def _after_block(run: _Run, record: Record) -> None:
 
 
 def _record_due(run: _Run, record: Record) -> bool:
-    """Row and snapshot where their schedules have an event; returns whether there was a snapshot."""
+    """Row, samples and snapshot where their schedules have an event; returns whether there was a snapshot."""
     model = run.model
     row = run.schedules["series"].due(model.step, model.time)
     snapshot = run.schedules["snapshots"].due(model.step, model.time)
-    if row or snapshot:
+    due = [it for it in run.samplers if it.schedule.due(model.step, model.time)]
+    if row or snapshot or due:
         model.check()
     if row:
         record.row(model, scheduled=True)
+    for sampler in due:
+        record.sample(model, sampler, scheduled=True)
     if snapshot:
         record.snapshot(model, scheduled=True)
         if run.meanwhile is not None:

@@ -1,4 +1,4 @@
-"""Progress of a run: a bar with time left on a terminal, a line every ten seconds elsewhere."""
+"""Progress of a run: a bar with time left on a terminal, a line in notebooks, a line every ten seconds elsewhere."""
 
 import threading
 import time as clock
@@ -25,8 +25,9 @@ COMPILING = "compiling kernels"
 class Watch:
     """Context that shows the progress of a run from ``start`` to ``end`` (s of simulated time).
 
-    quiet : nothing at all.  On a terminal a bar appears after two seconds; otherwise plain lines on stderr,
-    the first after ten seconds.  Until the first :meth:`update` the run counts as compiling its kernels.
+    quiet : nothing at all.  On a terminal a bar appears after two seconds, in a notebook one line that is written over;
+    otherwise plain lines on stderr, the first after ten seconds.  Until the first :meth:`update` the run counts as
+    compiling its kernels.
     """
 
     def __init__(self, title: str, start: float, end: float, *, quiet: bool = False) -> None:
@@ -91,12 +92,24 @@ class Watch:
         """Runs beside the model: wakes the bar after a while, then keeps it or the lines going."""
         if self._stop.wait(PATIENCE):
             return
+        if self.console.is_jupyter:
+            self._write_over()
+            return
         if self.console.is_terminal:
             self._show_bar()
             return
         while not self._stop.wait(LINE_EVERY if self.last_line > self.began else LINE_EVERY - PATIENCE):
             self.last_line = clock.perf_counter()
             self.say(self.line())
+
+    def _write_over(self) -> None:
+        """One line of a notebook's output, written over until the end; then it says how far the run came."""
+        longest, ended = 0, False
+        while not ended:
+            ended = self._stop.wait(0.5)
+            text = self.line()
+            longest = max(longest, len(text))
+            print(f"\r{text:<{longest}}", end="\n" if ended else "", flush=True)
 
     def _show_bar(self) -> None:
         columns = (

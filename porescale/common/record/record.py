@@ -6,13 +6,13 @@ was the last; resuming cuts both back to it.  Rows and snapshots that are there 
 start.
 """
 
-import sys
 import time as clock
+import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from porescale.common.core.errors import Fault, InputError, PorescaleError
+from porescale.common.core.errors import Fault, InputError, PorescaleError, PorescaleWarning
 from porescale.common.core.machine import peak_bytes
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
@@ -21,6 +21,7 @@ from porescale.common.record.cost import Cost
 from porescale.common.record.model import Model, tables_of
 from porescale.common.record.resume import CHECKPOINT as CHECKPOINT
 from porescale.common.record.resume import how_far, take_up
+from porescale.common.record.sampler import Sampler
 from porescale.common.record.schedule import Schedule
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import Series, require_length
@@ -59,6 +60,8 @@ class Record:
         self.table_bytes = dict(tables or {})
         self.tables = {name: Series(_table(folder, name), size) for name, size in self.table_bytes.items()}
         self.row_step = self.snapshot_step = -1
+        self.sample_steps: dict[str, int] = {}
+        self.scheduled_sample_steps: dict[str, int] = {}
         self.before = float(card["seconds"])
         self.began = clock.perf_counter()
         self.saved = self.began
@@ -107,13 +110,15 @@ class Record:
         card["resumed"] = [*card.get("resumed", []), {"at": cards.now(), "step": model.step, "time": model.time, **now}]
         if changed:
             what = ", ".join(changed)
-            print(f"warning: resumed with other {what}: not promised to go on bit for bit", file=sys.stderr)
+            text = f"resumed with other {what}: not promised to go on bit for bit"
+            warnings.warn(text, PorescaleWarning, stacklevel=2)
         card.update(outcome=cards.RUNNING, ended=None)
         card.pop("problem", None)
         cards.write_card(folder, card)
         record = cls(folder, card, saved.series_bytes, saved.table_bytes)
         record.row_step = record.scheduled_row_step = saved.row_step
         record.snapshot_step = record.scheduled_snapshot_step = saved.snapshot_step
+        record.sample_steps, record.scheduled_sample_steps = dict(saved.sample_steps), dict(saved.sample_steps)
         record.saved_step, record.saved_time = model.step, model.time
         record.cost = saved.cost
         return record
@@ -133,12 +138,23 @@ class Record:
     def row(self, model: Model, *, scheduled: bool) -> None:
         """Append a row of the series and of every table."""
         self.series.append(model.series())
-        for name, row in tables_of(model).items():
+        rows = tables_of(model)
+        for name, row in rows.items():
             self._open(name).append(row)
         self.row_step = model.step
         if scheduled:
             self.scheduled_row_step, self.scheduled_bytes = model.step, self.series.length
-            self.table_bytes = {name: table.length for name, table in self.tables.items()}
+            self.table_bytes |= {name: self.tables[name].length for name in rows}
+
+    def sample(self, model: Model, sampler: Sampler, *, scheduled: bool) -> None:
+        """Append what a sampler gives, if anything, to its table."""
+        row, name = sampler.sample(scheduled=scheduled), sampler.name
+        if row is not None:
+            self._open(name).append(row)
+        self.sample_steps[name] = model.step
+        if scheduled:
+            self.scheduled_sample_steps[name] = model.step
+            self.table_bytes |= {name: self.tables[name].length} if name in self.tables else {}
 
     def _open(self, name: str) -> Series:
         """The table of that name; the card names it before its file is there, so that it is never left over."""
@@ -180,6 +196,7 @@ class Record:
                 "snapshot_step": self.scheduled_snapshot_step,
                 "last_snapshot_step": self.snapshot_step,
                 "snapshots": self.snapshots,
+                "sample_steps": self.scheduled_sample_steps,
             },
             "schedules": {name: schedule.state() for name, schedule in schedules.items()},
             "state": model.state(),
@@ -233,8 +250,29 @@ def check_changes(folder: Path, given: dict[str, Any], today: Today | None = Non
             way = "" if whole is old else f"set it to {was!r} to go on as that did, or "
         value = now if now is not None else "absent"
         faults.append(Fault(key or "scene", value, problem, repair=f"{way}start another run"))
+    faults += cards.changed_laws(cards.read_card(folder), cards.plain(given))
+    faults += changed_hooks(cards.read_card(folder).get("hooks") or {}, given.get("hooks") or {})
     if faults:
         raise InputError(faults)
+
+
+def changed_hooks(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Fault]:
+    """What differs between the hooks of two cards, of a run and of what is to go on with it."""
+    faults = []
+    for name in dict.fromkeys([*old, *new]):
+        was, now, repair = old.get(name), new.get(name), f"take it from {cards.NAME}, or start another run"
+        if now is None:
+            problem, repair = "the run was begun with this hook", "resume it from Python with the hook"
+        elif was is None:
+            problem, repair = "the run was begun without this hook", "leave it out, or start another run"
+        elif was.get("source") != now["source"] or was.get("kind") != now["kind"]:
+            problem = "its source is not that with which the run was begun"
+        elif was.get("hash") != now["hash"]:
+            problem = "a value or function that it uses is not the one with which the run was begun"
+        else:
+            continue
+        faults.append(Fault(f"hook {name}", None, problem, repair=repair))
+    return faults
 
 
 def _identity(folder: Path) -> tuple[int, int] | None:

@@ -35,7 +35,8 @@ class Saved:
     """What a checkpoint holds of the run's files.
 
     series_bytes, table_bytes : length of the scheduled rows;  row_step, snapshot_step : of the last scheduled ones;
-    last_snapshot_step : of the last one, which may be there only because the run ended.
+    last_snapshot_step : of the last one, which may be there only because the run ended;  sample_steps : of the last
+    scheduled samples, by name.
     """
 
     reached: Reached
@@ -45,6 +46,7 @@ class Saved:
     row_step: int
     snapshot_step: int
     last_snapshot_step: int
+    sample_steps: dict[str, int]
 
 
 def how_far(folder: Path) -> Reached:
@@ -78,6 +80,7 @@ def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Sa
             int(meta["row_step"]),
             int(meta["snapshot_step"]),
             int(meta["last_snapshot_step"]),
+            {str(name): int(step) for name, step in meta.get("sample_steps", {}).items()},
         )
         wrong = senseless(content["state"]) or other(model.state(), content["state"])
         if wrong:

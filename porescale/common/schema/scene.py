@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Self
 
 import pydantic
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
+from porescale.common.schema.describe import as_html, in_lines
 from porescale.common.schema.messages import Key, dotted, every_key, nearest
 from porescale.common.schema.sections import Section, of_a_setting, scene_as_dict, try_scene
 from porescale.common.schema.written import Source, plain
@@ -33,9 +35,7 @@ class SceneBase(Section):
             return NotImplemented
         return all(getattr(self, name) == getattr(other, name) for name in type(self).model_fields)
 
-    def __hash__(self) -> int:
-        """Equal scenes have equal hashes."""
-        return hash(tuple(getattr(self, name) for name in type(self).model_fields))
+    __hash__ = Section.__hash__
 
     @property
     def source(self) -> Source:
@@ -50,6 +50,13 @@ class SceneBase(Section):
     def to_dict(self) -> dict[str, Any]:
         """The full scene with its defaults, in SI, as JSON-able tables: ``Scene(**scene.to_dict())`` equals it."""
         return scene_as_dict(self)
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """JSON Schema (2020-12) of scene files, for editors: keys, units, ranges, choices, quality levels."""
+        from porescale.common.schema.json_schema import scene_schema
+
+        return scene_schema(cls)
 
     def with_(self, changes: Mapping[str, Any], /) -> Self:
         """A copy with other values: ``scene.with_({"fluid.spacing": "0.3 mm", "probe[0].x": 0.1})``; this one stays.
@@ -78,6 +85,27 @@ class SceneBase(Section):
         settings = [scene_file.setting_text(name, value) for name, value in changes.items()]
         made._remember(table, replace(source, settings=(*source.settings, *settings)))
         return made
+
+    def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the scene as a TOML file that loads to an equal scene, whole or not at all; returns its path.
+
+        path : file, or an existing folder, which gets a scene.toml.  The file has the keys that differ from the
+        defaults, as they were written, with the chosen quality level and all changes in them; names of files that the
+        scene uses are those seen from the new place.  Raises InputError where there is a file, unless ``overwrite``.
+        """
+        from porescale.common.schema.save import save
+
+        return save(self, self._written, self._source.folder, Path(path), overwrite)
+
+    def __repr__(self) -> str:
+        """At most three lines."""
+        return in_lines(self, self.name, self._source.quality)
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        """A table for notebooks."""
+        return as_html(self, f"Scene {self.name!r}" if self.name else "Scene")
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy, of pydantic: ``update`` is not checked; use `with_`."""

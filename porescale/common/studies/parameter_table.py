@@ -64,7 +64,7 @@ def varied(options: Sequence[str]) -> list[Point]:
             repair = "write it as --vary contact.friction=0.2,0.5"
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
         lists.append([f"{key.strip()}={part}" for part in parts])
-    return named(_combinations(lists))
+    return named(combinations(lists))
 
 
 def crossed(points: Sequence[Point], others: Sequence[Point]) -> list[Point]:
@@ -147,10 +147,10 @@ def _of_toml(path: Path) -> Iterator[Point]:
             if not isinstance(values, list) or not values:
                 raise InputError(Fault(f"vary.{key}", str(values), "is not a list of values"))
             choices.append([f"{key}={literal(value, key)}" for value in values])
-        yield from _combinations(choices)
+        yield from combinations(choices)
 
 
-def _combinations(lists: Sequence[Sequence[str]]) -> list[Point]:
+def combinations(lists: Sequence[Sequence[str]]) -> list[Point]:
     """A point for every choice of one setting out of each list; InputError where they are too many."""
     count = math.prod(map(len, lists))
     if count > MOST:

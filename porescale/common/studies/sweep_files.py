@@ -48,11 +48,16 @@ def title(row: Mapping[str, Any]) -> str:
     return name if not unit or name.endswith(")") else f"{name} ({unit})"
 
 
+def lines_of(ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables) -> list[dict[str, Any]]:
+    """The lines of the table, one for each point."""
+    return [line(ended, keys_of(ends), rows, tables) for ended in ends]
+
+
 def write(
     folder: Path, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables
 ) -> list[dict[str, Any]]:
     """Write the files into ``folder``; gives the lines of the table."""
-    lines = [line(ended, keys_of(ends), rows, tables) for ended in ends]
+    lines = lines_of(ends, rows, tables)
     files.write_study(folder, NAME, csv=csv_text(lines), md=markdown(command, lines), png=picture(ends, rows, tables))
     return lines
 

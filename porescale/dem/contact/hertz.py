@@ -215,7 +215,7 @@ class Hertz:
         """K = 4/3 E sqrt(R), N/m^(3/2) per metre, at the reduced ``radius`` (m)."""
         return 4.0 / 3.0 * self.modulus * math.sqrt(radius)
 
-    def restitution(self, mass: float = 1.0) -> float:
+    def restitution(self, mass: float = 1.0, radius: float = 0.0) -> float:
         """Parting speed over approach speed, at any speed, radius and ``mass`` (kg/m)."""
         return restitution_of(self.damping_ratio, self.release)
 
@@ -256,7 +256,7 @@ class Hertz:
         total = quad(rising, 0.0, 1.0)[0] + quad(falling, 0.0, 1.0)[0]
         return float(total * (speed / w) ** -0.2 / w)
 
-    def ratio_of_damping(self, mass: float) -> float:
+    def ratio_of_damping(self, mass: float, radius: float = 0.0) -> float:
         """The damping ratio, which is the same at any ``mass``."""
         return self.damping_ratio
 

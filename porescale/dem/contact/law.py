@@ -33,6 +33,7 @@ KN, CN, KT, CT, MU, RULE, COMPLIANCE_T, KR, CR, MUR, COMPLIANCE_R = range(11)
 """Columns of a law's row, as kernels read it.  The compliances are 1/k_t and 1/k_r, which spare divisions (0 for none).
 """
 COLUMNS = 11
+"""Columns that every law has; a user's own law has one more for each of its keys, see own.py."""
 RELEASES = ("force", "overlap")
 RELEASE_FORCE, RELEASE_OVERLAP = 0.0, 1.0
 
@@ -127,11 +128,12 @@ class ContactLaw(Protocol):
     def shortest_contact(self, mass: float, radius: float) -> float:
         """Seconds that the shortest contact lasts, at effective ``mass`` (kg/m) and reduced ``radius`` (m)."""
 
-    def restitution(self, mass: float) -> float:
-        """Parting speed over approach speed at effective ``mass`` (kg/m)."""
+    def restitution(self, mass: float, radius: float = 0.0) -> float:
+        """Parting speed over approach speed at effective ``mass`` (kg/m) and reduced ``radius`` (m), at 1 cm/s where
+        the speed counts."""
 
-    def ratio_of_damping(self, mass: float) -> float:
-        """Normal damping ratio at effective ``mass`` (kg/m)."""
+    def ratio_of_damping(self, mass: float, radius: float = 0.0) -> float:
+        """Normal damping ratio at effective ``mass`` (kg/m) and reduced ``radius`` (m)."""
 
     def contact_report(self, mass: float, radius: float) -> tuple[float, str]:
         """Seconds that a contact lasts at effective ``mass`` (kg/m) and reduced ``radius`` (m), and a remark on it."""
@@ -192,6 +194,32 @@ def history_scaling(overlap, closing, dt, law):
 @law_function
 def stored_normal(overlap, radius, p, law):
     """Elastic energy (J/m) at ``overlap`` (m) > 0, reduced ``radius`` (m), row p (COLUMNS,)."""
+
+
+@law_function
+def normal_force(elastic, damping, seen, mass, p, law):
+    """Normal force (N/m), > 0 pushes apart, before the rule for the end of a contact.
+
+    elastic (N/m), damping (N s/m): of ``stiffness``;  seen: Relative motion;  mass (kg/m) reduced;  p (COLUMNS,) row.
+    A law has a body of its own where the two do not add up.
+    """
+
+
+@normal_force.of(KernelLaw)
+def _spring_and_dashpot(elastic, damping, seen, mass, p, law):
+    """Spring and dashpot side by side."""
+    return elastic + damping * seen.closing
+
+
+@law_function
+def row_numbers(p, law):
+    """A row as numbers, which a loop over pairs reads once; a law with more columns has a body of its own."""
+
+
+@row_numbers.of(KernelLaw)
+def _row_numbers(p, law):
+    """The columns that all laws have."""
+    return p[KN], p[CN], p[KT], p[CT], p[MU], p[RULE], p[COMPLIANCE_T], p[KR], p[CR], p[MUR], p[COMPLIANCE_R]
 
 
 @inline
@@ -300,7 +328,7 @@ def contact(seen, spring, roll, mass, dt, p, law):
     spring, roll (m): before the step;  mass (kg/m) reduced;  dt (s);  p (COLUMNS,) row.
     """
     elastic, damping, scale, softness, rubbing, turning_damping = stiffness(seen.overlap, seen.radius, mass, p, law)
-    normal = elastic + damping * seen.closing
+    normal = normal_force(elastic, damping, seen, mass, p, law)
     if p[RULE] == RELEASE_FORCE:
         normal = max(normal, 0.0)
     limit = max(normal, 0.0)

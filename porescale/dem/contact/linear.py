@@ -204,7 +204,7 @@ class Linear:
         """h = c / (2 sqrt(k m)) at effective ``mass`` (kg/m)."""
         return self.damping / (2.0 * math.sqrt(self.stiffness * mass))
 
-    def ratio_of_damping(self, mass: float) -> float:
+    def ratio_of_damping(self, mass: float, radius: float = 0.0) -> float:
         """The damping ratio at effective ``mass`` (kg/m)."""
         return self.damping_ratio(mass)
 
@@ -223,7 +223,7 @@ class Linear:
         """
         return contact_phase(self.damping_ratio(mass), self.release) / self.frequency(mass)
 
-    def restitution(self, mass: float) -> float:
+    def restitution(self, mass: float, radius: float = 0.0) -> float:
         """Parting speed over approach speed at effective ``mass`` (kg/m): exp(-h w0 T) for both rules."""
         return restitution_of(self.damping_ratio(mass), self.release)
 

@@ -13,23 +13,13 @@ import numpy as np
 from porescale.common.compiled.jit import inline
 from porescale.dem.contact.budget import add_contact_losses, add_release_losses, has_budget
 from porescale.dem.contact.law import (
-    CN,
-    COMPLIANCE_R,
-    COMPLIANCE_T,
-    CR,
-    CT,
-    KN,
-    KR,
-    KT,
-    MU,
-    MUR,
-    RULE,
     Relative,
     contact,
     force_components,
     has_history,
     load_history,
     moments,
+    row_numbers,
     store_history,
 )
 from porescale.dem.motion.periodic_cell import add_load, affine_velocity, image
@@ -109,21 +99,15 @@ def release_contact(i, k, overlap, way, p, history, budget, law, dt):
 
 
 @inline
-def numbers_of(p):
-    """A row of the law (COLUMNS,) as numbers."""
-    return p[KN], p[CN], p[KT], p[CT], p[MU], p[RULE], p[COMPLIANCE_T], p[KR], p[CR], p[MUR], p[COMPLIANCE_R]
-
-
-@inline
-def row_between(i, j, shared, table, material):
+def row_between(i, j, shared, law, material):
     """The law between discs i and j as numbers: ``shared`` where ``material`` is None.
 
-    shared: those of table[0, 0], read once before a loop over pairs; within, the compiler must assume that the forces
-    that are written might be the table's.
+    shared: those of law.table[0, 0], read once before a loop over pairs; within, the compiler must assume that the
+    forces that are written might be the table's.
     """
     if material is None:
         return shared
-    return numbers_of(table[material[i], material[j]])
+    return row_numbers(law.table[material[i], material[j]], law)
 
 
 @inline
@@ -131,7 +115,7 @@ def leave_pair(i, j, k, dx, dy, d, history, shared, law, dt, cell):
     """Add to the budget, if any, what the springs of a pair (dx, dy) m apart still held that touched a step ago."""
     if has_budget(d.budget) and has_history(history, k, law):
         du, dv = relative_velocity(i, j, dx, dy, d.velocity, cell)
-        p = row_between(i, j, shared, law.table, d.material)
+        p = row_between(i, j, shared, law, d.material)
         overlap = d.radius[i] + d.radius[j] - np.sqrt(dx * dx + dy * dy)
         way = contact_kinematics(dx, dy, du, dv, d.spin[i], d.spin[j], d.radius[i], d.radius[j])
         release_contact(i, k, overlap, way, p, history, d.budget, law, dt)
@@ -153,7 +137,7 @@ def pair_contact(i, j, k, d, history, shared, law, dt, cell):
         return False, 0.0, 0.0, 0.0, 0.0
     du, dv = relative_velocity(i, j, dx, dy, d.velocity, cell)
     mass = d.body_mass[i] * d.body_mass[j] / (d.body_mass[i] + d.body_mass[j])
-    p = row_between(i, j, shared, law.table, d.material)
+    p = row_between(i, j, shared, law, d.material)
     overlap = ri + rj - np.sqrt(square)
     way = contact_kinematics(dx, dy, du, dv, d.spin[i], d.spin[j], ri, rj)
     gx, gy, moment_i, moment_j = contact_force(i, k, overlap, way, mass, p, history, d.budget, law, dt)
@@ -169,7 +153,7 @@ def pair_forces(d, pairs, law, dt, cell):
     Adds to ``d.force`` N/m and ``d.torque`` N m/m in the order of the list; overwrites ``pairs.history`` m.
     Not checked: two centres in one place give nan, which Grains.check reports.
     """
-    shared = numbers_of(law.table[0, 0])
+    shared = row_numbers(law.table[0, 0], law)
     for i in range(d.torque.shape[0]):
         fx, fy, moment = 0.0, 0.0, 0.0
         for k in range(pairs.start[i], pairs.start[i + 1]):

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import inline, kernel, law_function, parallel_kernel, prange, threads
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
-from porescale.dem.forces.pairs import numbers_of, pair_contact, pair_forces, start_forces
+from porescale.dem.contact.law import row_numbers
+from porescale.dem.forces.pairs import pair_contact, pair_forces, start_forces
 from porescale.dem.forces.rectangle import add_rectangle_forces
 from porescale.dem.forces.walls import RUN, add_near_walls, add_plate_forces
 
@@ -100,7 +101,7 @@ def list_far(start, partner, far_start, incoming_start, incoming):
 @parallel_kernel
 def far_forces(d, pairs, law, dt, cell, sweep):
     """Contacts of pairs across blocks: overwrites sweep.far (f, 4) and their springs.  Arguments as in pair_forces."""
-    count, shared = d.radius.shape[0], numbers_of(law.table[0, 0])
+    count, shared = d.radius.shape[0], row_numbers(law.table[0, 0], law)
     start, partner, history, far_start, far = pairs.start, pairs.partner, pairs.history, sweep.far_start, sweep.far
     for b in prange((count + BLOCK - 1) // BLOCK):
         for i in range(b * BLOCK, min((b + 1) * BLOCK, count)):
@@ -115,7 +116,7 @@ def far_forces(d, pairs, law, dt, cell, sweep):
 @parallel_kernel
 def near_forces(d, pairs, law, dt, cell, sweep):
     """All forces between discs, those across blocks from ``sweep.far``: overwrites force, torque and springs."""
-    count, shared = d.radius.shape[0], numbers_of(law.table[0, 0])
+    count, shared = d.radius.shape[0], row_numbers(law.table[0, 0], law)
     start, partner, history, far_start, far = pairs.start, pairs.partner, pairs.history, sweep.far_start, sweep.far
     incoming_start, incoming = sweep.incoming_start, sweep.incoming
     force, torque, external_force, external_torque = d.force, d.torque, d.external_force, d.external_torque

@@ -22,11 +22,12 @@ from porescale.piv.images.prepare import Ready, ready
 class Shots:
     """Pictures with what is done to them before they are measured.
 
-    mask : None, a file, "bright" or "dark";  polygons : "x,y x,y …";  background : "none", "mean" or "least".
+    mask : None, a file, "bright" or "dark", or an array (rows, columns), True in solids;  polygons : "x,y x,y …";
+    background : "none", "mean" or "least".
     """
 
     film: Film
-    mask: str | None = None
+    mask: str | Flags | None = None
     polygons: tuple[str, ...] = ()
     background: str = "none"
 

@@ -1,29 +1,38 @@
 """A measured field as people keep it: in pixels with y down, or in metres and metres a second with y up."""
 
+from __future__ import annotations
+
 import csv
 import io
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.extras import extra
 from porescale.common.core.types import Flags, Floats
 from porescale.piv.estimate.measure import Vectors
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
 
 COLUMNS = ("x", "y", "u", "v", "valid", "replaced", "solid", "correlation", "uncertainty")
 OPENPIV = ("x", "y", "u", "v", "flags", "mask")
 """Columns of OpenPIV's text files; flags: 0 valid, 1 not;  mask: 1 in a solid."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Field:
     """Vectors on a grid, rows from the top of the picture down.
 
     x (nx,), y (ny,) : px or m;  u, v (ny, nx) : px a frame or m/s, nan in solids, finite elsewhere;  valid, replaced,
     solid (ny, nx) : flags;  correlation, uncertainty (ny, nx) : the latter as u, infinite where replaced;  upwards :
-    whether y points up, as it does in metres.
+    whether y points up, as it does in metres;  time : in the middle between the two pictures, s (frames where their
+    interval is not given), None where it is not known.
     """
 
     x: Floats
@@ -36,6 +45,7 @@ class Field:
     correlation: Floats
     uncertainty: Floats
     upwards: bool = False
+    time: float | None = None
 
     def vorticity(self) -> Floats:
         """dv/dx - du/dy with y up, so that a vortex turning against the clock counts as positive; nan at solids."""
@@ -43,6 +53,48 @@ class Field:
         down = np.gradient(self.u, self.y, axis=0) if len(self.y) > 1 else np.zeros_like(self.u)
         turning = across - down
         return turning if self.upwards else -turning
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row for each grid point, with the columns of the CSV file; needs pandas (extra "notebook")."""
+        x, y = np.meshgrid(self.x, self.y)
+        columns = {"x": x, "y": y, **{name: getattr(self, name) for name in COLUMNS[2:]}}
+        return extra("pandas").DataFrame({name: values.ravel() for name, values in columns.items()})
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Arrows, replaced vectors in another colour, with labels and units; returns the Axes."""
+        from porescale.piv.fields.arrows import draw_arrows
+
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            ax = plt.subplots(layout="constrained")[1]
+        fast = draw_arrows(ax, self, over_image=False)
+        length, speed = ("m", "m/s") if self.upwards else ("px", "px a frame")
+        ax.set(aspect="equal", xlabel=f"x ({length})", ylabel=f"y ({length})")
+        ax.set_title(f"longest arrows {fast:.3g} {speed}")
+        if not self.upwards and ax.get_ylim()[0] < ax.get_ylim()[1]:
+            ax.invert_yaxis()
+        return ax
+
+    def __repr__(self) -> str:
+        length, speed = ("m", "m/s") if self.upwards else ("px", "px a frame")
+        fluid = int((~self.solid).sum())
+        when = "" if self.time is None else f" at t = {self.time:.6g}"
+        size = np.hypot(self.u, self.v)[~self.solid]
+        fast = f"largest {size.max():.4g} {speed}" if size.size else "all solid"
+        return (
+            f"Field of {' x '.join(map(str, self.u.shape))} vectors (rows x columns){when}\n"
+            f"x {self.x.min():.6g} to {self.x.max():.6g}, y {self.y.min():.6g} to {self.y.max():.6g} {length}\n"
+            f"{int(self.valid.sum())} of {fluid} in the fluid valid, {int(self.replaced.sum())} replaced, {fast}"
+        )
+
+    def _repr_png_(self) -> bytes:
+        from matplotlib.figure import Figure
+
+        figure, kept = Figure(layout="constrained"), io.BytesIO()
+        self.plot(figure.add_subplot())
+        figure.savefig(kept, format="png", dpi=100)
+        return kept.getvalue()
 
 
 def in_pixels(vectors: Vectors, corner: tuple[int, int] = (0, 0)) -> Field:

@@ -12,14 +12,10 @@ from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.types import Floats
+from porescale.piv.fields.arrows import draw_arrows
 from porescale.piv.fields.compare import Comparison
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.vortices import vortices
-
-ARROWS = 48
-"""Arrows across a picture, at most."""
-REPLACED, VALID = "#d95f02", "#ffd54a"
-"""Colours of arrows over an image: which differ in lightness, too."""
 
 
 def quiver(
@@ -31,19 +27,7 @@ def quiver(
         high = float(np.percentile(image, 99.5)) or 1.0
         whole: Any = extent
         axes.imshow(image, cmap="gray", vmin=0, vmax=1.3 * high, extent=whole, aspect="equal", interpolation="nearest")
-    thin = max(1, -(-max(field.u.shape) // ARROWS))
-    cut = (slice(thin // 2, None, thin),) * 2
-    x, y = np.meshgrid(field.x, field.y)
-    fluid = ~field.solid[cut]
-    speed = np.hypot(field.u, field.v)[cut][fluid]
-    fast = float(np.percentile(speed, 98)) if speed.size else 1.0
-    step = abs(field.x[1] - field.x[0]) * thin if len(field.x) > 1 else 1.0
-    for own, colour in ((field.valid, VALID if image is not None else "#1f4e79"), (field.replaced, REPLACED)):
-        here = fluid & own[cut]
-        axes.quiver(
-            x[cut][here], y[cut][here], field.u[cut][here], field.v[cut][here], color=colour, angles="xy",
-            scale_units="xy", scale=max(fast, 1e-300) / (1.2 * step), width=0.0022,
-        )  # fmt: skip
+    fast = draw_arrows(axes, field, over_image=image is not None)
     unit = "m/s" if field.upwards else "px a frame"
     axes.set_title(
         f"displacement; longest arrows {fast:.3g} {unit}" if not field.upwards else f"velocity; {fast:.3g} {unit}"

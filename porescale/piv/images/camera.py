@@ -73,6 +73,31 @@ def fastest(run: Run, start: float, end: float) -> tuple[float, float]:
     return longer / SIDE, speed
 
 
+def shot_of(
+    run: Run,
+    camera: Camera,
+    *,
+    scale: float | None = None,
+    interval: float | None = None,
+    start: float | None = None,
+    end: float | None = None,
+    exposure: float = 0.0,
+    seed: int = 0,
+) -> Shooting:
+    """How a run is filmed where not all is given: the whole run, SIDE px the longer side, 4 px of the fastest flow
+    between frames.  InputError where the times are not within the run, or there is nothing to film.
+    """
+    first, last = (float(it) for it in run.times[[0, -1]]) if len(run) else (0.0, 0.0)
+    begin, stop = first if start is None else start, last if end is None else end
+    if not first <= begin < stop <= last:
+        text = f"{begin:g} to {stop:g}"
+        raise InputError(Fault("--start, --end", text, "is not within the run", "s", f"{first:g} to {last:g}"))
+    pixel, speed = fastest(run, begin, stop)
+    pixel = pixel if scale is None else scale
+    pause = 4 * pixel / speed if interval is None else interval
+    return shooting(run, Shooting(camera, pixel, pause, begin, stop, exposure, seed))
+
+
 def shooting(run: Run, shot: Shooting) -> Shooting:
     """``shot`` with the picture's size from the run's domain.  InputError where there is nothing to film."""
     grid = grid_of(run)

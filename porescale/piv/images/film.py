@@ -1,4 +1,5 @@
-"""Pictures from files: single ones, series of them, and films (mp4, avi, whatever PyAV opens), one at a time."""
+"""Pictures from files: single ones, series of them, and films (mp4, avi, whatever PyAV opens, stacks in one TIFF file),
+one at a time."""
 
 import glob
 from collections.abc import Iterator, Sequence
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.piv.images import stacks
 
 Picture = NDArray[Any]
 Box = tuple[int, int, int, int]
@@ -41,9 +43,9 @@ def picture(path: Path) -> Picture:
 class Film:
     """Frames of a film or of a series of pictures.
 
-    files : one film, or the pictures in order;  start, end : first frame and the one after the last (None: all);
-    step : frames from one used to the next;  region : left, top, right, bottom px, the last two excluded;  rate :
-    frames a second, None if the files do not hold it.
+    files : one film or stack, or the pictures in order;  start, end : first frame and the one after the last (None:
+    all);  step : frames from one used to the next;  region : left, top, right, bottom px, the last two excluded;
+    rate : frames a second, None if the files do not hold it.
     """
 
     files: tuple[Path, ...]
@@ -70,18 +72,22 @@ class Film:
 
     def count(self) -> int:
         """Number of chosen frames; a film whose file does not hold it is decoded."""
-        if not self.moving:
-            return len(range(len(self.files))[self.start : self.end : self.step])
-        stated = _stated(self.files[0])
-        if stated:
-            return len(range(stated)[self.start : self.end : self.step])
-        return sum(1 for _ in self._chosen())
+        known = len(self.files) if not self.moving else self._pages or _stated(self.files[0])
+        return len(range(known)[self.start : self.end : self.step]) if known else sum(1 for _ in self._chosen())
+
+    @property
+    def _pages(self) -> int:
+        """Number of pages of a stack, 0 of a film."""
+        return stacks.count(self.files[0]) if self.files[0].suffix.lower() in stacks.SUFFIXES else 0
 
     def _chosen(self) -> Iterator[tuple[int, Picture]]:
         """The chosen frames: number and whole picture."""
         if not self.moving:
             for number in range(len(self.files))[self.start : self.end : self.step]:
                 yield number, picture(self.files[number])
+            return
+        if total := self._pages:
+            yield from stacks.pages(self.files[0], range(total)[self.start : self.end : self.step])
             return
         for number, frame in enumerate(_decoded(self.files[0])):
             if self.end is not None and number >= self.end:
@@ -91,7 +97,7 @@ class Film:
 
 
 def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
-    """A film from one film file, a folder, a pattern (img_*.png), or pictures in the order given.
+    """A film from one film file or stack, a folder, a pattern (img_*.png), or pictures in the order given.
 
     chosen : start, end, step, region of :class:`Film`.  InputError where there is nothing to read.
     """
@@ -109,6 +115,8 @@ def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
             files = sorted(it for it in path.iterdir() if it.suffix.lower() in STILLS)
         elif not path.exists() and any(letter in str(path) for letter in "*?["):
             files = [Path(it) for it in sorted(glob.glob(str(path)))]
+        elif stacks.is_stack(path):
+            return Film((path,), **chosen)
         elif path.suffix.lower() in STILLS:
             raise InputError(Fault("film", str(path), "is a single picture", repair="give two, or a film"))
         else:
@@ -116,7 +124,28 @@ def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
         if len(files) < 2:
             raise InputError(Fault("film", str(path), f"{len(files)} pictures there", repair="give two or more"))
         return Film(tuple(files), **chosen)
+    for stack in (it for it in names if stacks.is_stack(Path(it))):
+        repair = "give it alone, or single pictures"
+        raise InputError(
+            Fault("film", str(stack), f"is a stack of {stacks.count(Path(stack))} pictures", repair=repair)
+        )
     return Film(tuple(Path(it) for it in names), **chosen)
+
+
+@dataclass(frozen=True)
+class Held(Film):
+    """Frames in memory.  pictures : grey, (rows, columns) each, in order."""
+
+    pictures: tuple[Picture, ...] = ()
+
+    def count(self) -> int:
+        """Number of chosen frames."""
+        return len(range(len(self.pictures))[self.start : self.end : self.step])
+
+    def _chosen(self) -> Iterator[tuple[int, Picture]]:
+        """The chosen frames: number and whole picture."""
+        for number in range(len(self.pictures))[self.start : self.end : self.step]:
+            yield number, self.pictures[number]
 
 
 def background(film: Film, kind: str) -> NDArray[np.float32] | None:

@@ -1,7 +1,7 @@
 """Frames of the virtual camera as files: pictures, masks, a film, and how they were taken."""
 
 import json
-import sys
+import logging
 import time
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -17,8 +17,9 @@ from porescale.common.pictures.film import write_film
 from porescale.common.record.open_run import Run
 from porescale.piv.images.camera import Shooting, frames
 
+LOG = logging.getLogger(__name__)
 PATIENCE = 10.0
-"""Seconds between lines of progress."""
+"""Seconds between lines of progress, which go to the log; commands print it."""
 RATE = 25
 """Frames a second that the film is played at."""
 
@@ -46,7 +47,7 @@ def write_frames(run: Run, shot: Shooting, folder: Path) -> int:
             now = time.perf_counter()
             if now - last > PATIENCE:
                 left = (now - began) / count * (total - count)
-                print(f"{count} of {total} frames, about {left:.0f} s left", file=sys.stderr, flush=True)
+                LOG.info("%d of %d frames, about %.0f s left", count, total, left)
                 last = now
             rows, columns = (side // 2 * 2 for side in frame.picture.shape)
             yield np.repeat(frame.picture[:rows, :columns, None], 3, 2)

@@ -11,6 +11,7 @@ import numpy as np
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Flags
 from porescale.piv.images.film import Film, Picture, open_film, picture
+from porescale.piv.images.stacks import is_stack
 
 GREY = 0.5
 """Share of white from which a pixel is solid."""
@@ -49,15 +50,16 @@ def segmented(image: Picture, *, bright: bool, least: int = 9) -> Flags:
     return np.asarray(found > 0, bool)
 
 
-def masks(source: str | None, corners: list[str], film: Film) -> Iterator[Flags | None]:
+def masks(source: str | Flags | None, corners: list[str], film: Film) -> Iterator[Flags | None]:
     """The mask of every chosen frame of ``film``, in turn.
 
-    source : None, a bitmap, a film or series of bitmaps (one a frame, frames chosen like the film's), "bright" or
-    "dark" to segment each frame;  corners : polygons that are solid in all.
+    source : None, a bitmap, a film, stack or series of bitmaps (one a frame, frames chosen like the film's), "bright"
+    or "dark" to segment each frame, or an array (rows, columns), True in solids of all frames;  corners : polygons that
+    are solid in all.
     """
     for frame, found in zip(film, _sources(source, film), strict=False):
         mask = found
-        if source in ("bright", "dark"):
+        if isinstance(source, str) and source in ("bright", "dark"):
             mask = segmented(frame, bright=source == "bright")
         for text in corners:
             left, top = film.region[:2] if film.region else (0, 0)
@@ -66,21 +68,28 @@ def masks(source: str | None, corners: list[str], film: Film) -> Iterator[Flags 
         yield mask
 
 
-def _sources(source: str | None, film: Film) -> Iterator[Flags | None]:
+def _cut(whole: Flags, film: Film) -> Flags:
+    """The part of a mask that is in the film's region."""
+    left, top, right, bottom = film.region or (0, 0, *whole.shape[::-1])
+    return whole[top:bottom, left:right]
+
+
+def _sources(source: str | Flags | None, film: Film) -> Iterator[Flags | None]:
     """Masks from files, None where there are none."""
+    if isinstance(source, np.ndarray):
+        yield from repeat(_cut(source.astype(bool), film))
+        return
     if source is None or source in ("bright", "dark"):
         yield from repeat(None)
         return
     path = Path(source)
-    if path.is_file() and path.suffix.lower() not in (".mp4", ".avi", ".mov", ".mkv", ".webm"):
+    still_picture = path.is_file() and path.suffix.lower() not in (".mp4", ".avi", ".mov", ".mkv", ".webm")
+    if still_picture and not is_stack(path):
         try:
             still = bitmap(picture(path))
         except InputError as error:
             raise InputError([replace(fault, key="--mask") for fault in error.faults]) from None
-        if film.region is not None:
-            left, top, right, bottom = film.region
-            still = still[top:bottom, left:right]
-        yield from repeat(still)
+        yield from repeat(_cut(still, film))
         return
     if not path.exists() and not any(letter in source for letter in "*?["):
         repair = "name a bitmap, a film, a folder or pattern of bitmaps; or bright or dark, to segment"

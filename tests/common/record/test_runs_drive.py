@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from porescale.common.core.atomic import owned
-from porescale.common.core.errors import InputError, Unstable
+from porescale.common.core.errors import InputError, PorescaleWarning, Unstable
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
 from porescale.common.record.checkpoint import read_checkpoint
@@ -222,22 +222,20 @@ def test_a_run_of_another_package_is_not_resumed_and_named(tmp_path):
     assert run_toy(tmp_path, duration=0.2, card={"package": "toys", "scene": scene}, resume=True).step == 200
 
 
-def test_going_on_with_other_sources_or_versions_is_warned_of_and_every_session_is_on_the_card(
-    tmp_path, monkeypatch, capsys
-):
+@pytest.mark.filterwarnings("error")
+def test_going_on_with_other_sources_or_versions_is_warned_of_and_every_session_is_on_the_card(tmp_path, monkeypatch):
     monkeypatch.setattr("porescale.common.compiled.jit.source_hash", lambda: "aaa")
     run_toy(tmp_path, duration=0.05)
-    run_toy(tmp_path, duration=0.1, resume=True)
-    assert capsys.readouterr().err == ""  # the twin: nothing changed
+    run_toy(tmp_path, duration=0.1, resume=True)  # the check that must fail: nothing changed, no warning
     monkeypatch.setattr("porescale.common.compiled.jit.source_hash", lambda: "bbb")
     versions = {**cards.versions(), "numpy": "0.1", "h5py": "0.2"}  # h5py moves bits, it does not make them
     monkeypatch.setattr("porescale.common.record.card.versions", lambda: versions)
-    run_toy(tmp_path, duration=0.15, resume=True)
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("warning: resumed with other sources aaa -> bbb, numpy ")
+    with pytest.warns(PorescaleWarning) as caught:
+        run_toy(tmp_path, duration=0.15, resume=True)
+    (line,) = (str(it.message) for it in caught)
+    assert line.startswith("resumed with other sources aaa -> bbb, numpy ")
     assert line.endswith("-> 0.1: not promised to go on bit for bit")
-    run_toy(tmp_path, duration=0.2, resume=True)
-    assert capsys.readouterr().err == ""  # said once: it is the last session that counts
+    run_toy(tmp_path, duration=0.2, resume=True)  # said once: it is the last session that counts
     card = open_run(tmp_path).card
     assert card["sources"] == "aaa"
     assert [entry["sources"] for entry in card["resumed"]] == ["aaa", "bbb", "bbb"]

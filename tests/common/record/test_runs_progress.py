@@ -34,6 +34,33 @@ def test_where_there_is_no_terminal_lines_tell_how_far_it_is(monkeypatch):
     assert lines[-1].endswith(" left")
 
 
+def test_a_notebook_gets_one_line_that_is_written_over(monkeypatch, capsys):
+    monkeypatch.setattr(progress, "PATIENCE", 0.02)
+    watch, said = Watch("dam", 0.0, 2.0), ""
+
+    def heard(word: str) -> bool:
+        nonlocal said
+        said += capsys.readouterr().out
+        return word in said
+
+    watch.console = Console(file=io.StringIO(), force_jupyter=True)
+    with watch:
+        awaited(lambda: heard(COMPILING))
+        watch.update(15, 0.75)
+        watch.update(16, 0.80)
+        awaited(lambda: heard(" left"))
+        watch.update(40, 2.0)
+    heard("")
+    assert said.count("\n") == 1
+    assert said.endswith("\n")
+    assert "t = 2 of 2 s (100 %), step 40" in said.split("\r")[-1]
+    quiet = Watch("dam", 0.0, 2.0, quiet=True)
+    quiet.console = watch.console
+    with quiet:
+        quiet.update(1, 1.0)
+    assert not capsys.readouterr().out
+
+
 def test_a_terminal_gets_a_bar_that_names_the_compiling(monkeypatch):
     said = watched(monkeypatch, terminal=True)
     assert COMPILING in said

@@ -3,7 +3,8 @@
 import copy
 import pickle
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, ClassVar
 
 import numpy as np
 import pydantic
@@ -12,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.schema.diff import diff
 from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.scene_file import parse_setting, setting_text
 from porescale.common.schema.sections import Section, load, quantity, validate
@@ -167,3 +169,71 @@ VALUES = st.recursive(
 @given(value=VALUES)
 def test_a_setting_keeps_every_bit_of_its_value(value: Any) -> None:
     assert parse_setting(setting_text("a.b[2].c", value)) == (("a", "b", 2, "c"), value)
+
+
+def test_a_saved_scene_is_the_same_scene_from_its_new_place(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "spacing.txt").write_text("0.25")
+    (tmp_path / "a" / "dam.toml").write_text('title = "A dam"\n[fluid]\nread = "spacing.txt"\nvelocity = [0.0, 0.0]\n')
+    scene = load(tmp_path / "a" / "dam.toml", Read).with_({"probe": [{"x": 1.0 / 3.0}]})
+    file = scene.save(tmp_path / "b" / "c" / "scene.toml")
+    assert load(file, Read) == scene
+    assert load(file, Read).with_({"title": "other"}).fluid.spacing == 0.25
+    assert "velocity" not in file.read_text()  # as by default
+    assert 'read = "../../a/spacing.txt"' in file.read_text()
+    assert load(scene.save(tmp_path), Read) == scene  # a folder gets a scene.toml
+
+
+class ReadFluid(Fluid):
+    files: ClassVar[tuple[str, ...]] = ("read",)
+
+
+class Read(SceneBase):
+    title: str = ""
+    fluid: ReadFluid | None = None
+    probe: tuple[Probe, ...] = ()
+
+
+def test_a_scene_is_saved_whole_or_not_at_all(tmp_path: Path) -> None:
+    scene = Scene(fluid={"spacing": 0.1})
+    file = scene.save(tmp_path / "a.toml")
+    before = file.read_bytes()
+    assert lines(lambda: scene.save(file)) == [f"{file}: exists already; name another file, or give overwrite=True"]
+    assert file.read_bytes() == before
+    scene.with_({"title": "b"}).save(file, overwrite=True)
+    assert load(file, Scene).title == "b"
+    (tmp_path / "spacing.txt").write_text("0.25")
+    made = validate(Read, {"fluid": {"read": "spacing.txt"}}, folder=tmp_path)
+    (tmp_path / "spacing.txt").write_text("0.75")  # what the file says now is another scene
+    assert load(made.save(tmp_path / "b.toml"), Read) == made  # its numbers are written in place of the file's name
+
+
+def test_the_difference_of_two_scenes_key_by_key() -> None:
+    a = Scene(title="a", fluid={"spacing": 0.1}, probe=[{"x": 0.5}])
+    b = Scene(title="a", fluid={"spacing": 0.2, "velocity": (0, 1)}, probe=[{"x": 0.5}, {"x": 1, "name": "<b>"}])
+    assert dict(diff(a, b, Scene)) == {
+        "fluid.spacing": (0.1, 0.2),
+        "fluid.velocity": ((0.0, 0.0), (0.0, 1.0)),
+        "probe[1].x": (None, 1.0),
+        "probe[1].name": (None, "<b>"),
+    }
+    assert dict(diff(a, a.with_({"fluid": None}), Scene))["fluid.spacing"] == (0.1, None)
+    assert not diff(a, Scene(**a.to_dict()), Scene)
+    assert repr(diff(a, a, Scene)) == "no difference"
+    assert len(repr(diff(a, b, Scene)).splitlines()) == 3
+    assert str(diff(a, b, Scene)).splitlines()[0] == "fluid.spacing   0.1 -> 0.2 m"
+    assert "&lt;b&gt;" in diff(a, b, Scene)._repr_html_()
+    card = SimpleNamespace(card={"scene": b.to_dict(), "scene_file": None})
+    assert diff(a, card, Scene) == diff(a, b, Scene)
+    assert "is neither a scene" in lines(lambda: diff(a, 3, Scene))[0]
+
+
+def test_what_a_scene_shows_of_itself_is_short() -> None:
+    scene = Scene(title="x" * 300, fluid={"spacing": 0.1}, probe=[{"x": 0.5}] * 500)
+    shown = repr(scene).splitlines()
+    assert len(shown) <= 3
+    assert max(map(len, shown)) <= 120
+    assert shown[1:] == ["sections: fluid, probe (500)", "fluid.spacing = 0.1 m"]
+    assert repr(scene.fluid) == "Fluid(spacing=0.1 m)"
+    assert scene._repr_html_().count("<tr>") < 10
+    assert "cell size" in scene._repr_html_()

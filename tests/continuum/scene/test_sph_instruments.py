@@ -5,10 +5,11 @@ import csv
 import numpy as np
 import pytest
 
-from continuum_sph.builders.instruments import MeasuredWater, interpolate, level_row, surface_height
+from continuum_sph.builders.instruments import MeasuredWater, interpolate, level_row, probe_row, surface_height
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.instruments import LevelSection
+from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.scene.sections import Scene
+from porescale.common.core.errors import InputError
 from porescale.common.neighbors import square_lattice
 from porescale.common.record.drive import drive
 from porescale.common.schema.sections import validate
@@ -102,3 +103,31 @@ def test_a_scene_without_instruments_has_no_tables():
     scene = validate(Scene, {**SCENE, "probe": [], "level": []})
     assert Simulation(scene).tables() == {}
     assert set(level_row((LevelSection(x=0.5),), cloud())) == {"level 0 (m)"}
+
+
+def test_a_probe_with_sides_takes_the_mean_of_the_water_in_it():
+    x = square_lattice((0.0, 0.0), (1.0, 0.5), SPACING)
+    one, p = np.ones(len(x)), 100.0 + 40.0 * x[:, 0] - 70.0 * x[:, 1]
+    water = MeasuredWater(x, SPACING**2 * one, p, np.column_stack((x[:, 1], -2.0 * x[:, 0])), 0.065, SPACING, 1.0)
+    probe = ProbeSection(name="pore", x=0.6, y=0.25, width=0.2, height=0.3)  # sides between particles
+    row = probe_row((probe,), water)
+    # The mean of a linear field is that of the centre; sums of 24 numbers.
+    exact = [100.0 + 24.0 - 17.5, 0.25, -1.2, 1.0]
+    np.testing.assert_allclose(list(row.values()), exact, rtol=100 * eps)
+    names = "mean pressure (Pa)", "mean velocity x (m/s)", "mean velocity y (m/s)", "fluid share ()"
+    assert list(row) == [f"pore {name}" for name in names]
+    # Half as much water in the right half, whose middle is 0.05 m off like that of the left: it weighs half.
+    share = np.where(x[:, 0] > 0.6, 0.4, 0.8)
+    soaked = probe_row((probe,), water, share)
+    shifted = 40.0 * 0.05 * (0.4 - 0.8) / (0.4 + 0.8)
+    assert soaked["pore mean pressure (Pa)"] == pytest.approx(exact[0] + shifted, rel=100 * eps)
+    assert soaked["pore fluid share ()"] == pytest.approx(0.6, rel=100 * eps)
+    assert abs(shifted) > 0.5  # the twin: the plain mean is another
+    dry = list(probe_row((ProbeSection(x=0.5, y=2.0, width=0.2, height=0.2),), water).values())
+    assert np.isnan(dry[:3]).all()
+    assert dry[3] == 0.0
+
+
+def test_a_probe_with_one_side_is_refused():
+    with pytest.raises(InputError, match=r"height: a rectangle needs both"):
+        validate(ProbeSection, {"x": 0.1, "y": 0.1, "width": 0.2})

@@ -1,0 +1,54 @@
+"""How scenes of a continuum are shown: where fluids and soil are, how fast water is, how far soil has come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from porescale.common.pictures.look import Line, Look
+    from porescale.common.record.model import Snapshot
+
+LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
+"""Names and colours of water and soil."""
+LINE = {-1: ("phreatic", "#c0182b")}
+"""Of the surface of the water in soil, which is no particle's layer."""
+AIR = {3: ("air", "#e2e2e2")}
+"""And of air in it."""
+TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
+"""Names and colours of two fluids."""
+
+
+def is_dry(scene: Mapping[str, Any]) -> bool:
+    """Whether a scene with soil, as on a run card, is without water."""
+    return not (scene["water"]["column"] or scene.get("reservoir"))
+
+
+def look_of_scene(
+    scene: Mapping[str, Any], name: str, surface: Callable[[Snapshot], Sequence[Line]] | None = None
+) -> Look:
+    """The look of a scene, as on a run card.  surface : of the water in soil, where it is known."""
+    from porescale.common.pictures.look import Look
+
+    width, height = scene["tank"]["width"], scene["tank"]["height"]
+    corners = [(0.0, height), (0.0, 0.0), (width, 0.0), (width, height)]
+    if scene["tank"]["lid"]:
+        corners.append(corners[0])
+    margin = 0.02 * width
+    more: dict[str, Any] = {"colour": "velocity"}
+    if scene["soil"] and is_dry(scene):
+        more = {"colour": "displacement"}
+    elif scene["soil"]:
+        kinds = LAYERS | (AIR if scene.get("air") else {}) | (LINE if surface else {})
+        more = {"colour": "layer", "kinds": kinds, "marks": surface}
+    elif scene["inclusion"]:
+        more = {"colour": "fluid", "kinds": TWO}
+    return Look(
+        title=scene["title"] or name,
+        cloud="particles",
+        lines=list(pairwise(corners)),
+        dot=0.5 * scene["numerics"]["spacing"],
+        view=(-margin, width + margin, -margin, height + margin),
+        **more,
+    )

@@ -1,0 +1,59 @@
+"""Where held discs must not come, and what a ring cannot be beside."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from porescale.common.core.errors import Fault
+from porescale.common.core.types import Floats
+from porescale.scene.bodies.disc import Disc
+
+if TYPE_CHECKING:
+    from porescale.scene.scene import Scene
+
+TOUCH = 1e-3
+"""Share of a radius by which a disc may be in something."""
+CLOSE, MOST = 0.01, 20_000
+"""Share of a radius that a disc goes at most between two places that are looked at; most places of one disc."""
+
+
+def path_of(it: Disc, end: float) -> tuple[Floats, Floats]:
+    """Times (t,) s up to ``end`` (s) and centres (t, 2) m of a held disc, close to each other."""
+    x, y, _ = (abs(value) for value in it.motion(0.0))
+    x, y = (fn.largest if fn else value for fn, value in ((it.velocity_x, x), (it.velocity_y, y)))
+    count = min(MOST, 1 + math.ceil(math.hypot(x, y) * end / (CLOSE * 0.5 * it.diameter)))
+    times = np.linspace(0.0, end, count) if count > 1 else np.zeros(1)
+    return times, np.array([(it.x, it.y)]) + np.array([it.travelled(float(time))[:2] for time in times])
+
+
+def check_ring(scene: Scene) -> list[Fault]:
+    """What is wrong with [ring] beside the rest of a scene: fluid, a closed box around it, held discs in it."""
+    ring, d = scene.ring, scene.domain
+    if ring is None:
+        return []
+    faults, radius = [], 0.5 * ring.diameter
+    if scene.fluid is None:
+        faults.append(Fault("ring", None, "stands in fluid", repair="add [fluid], or leave it out"))
+    beside = {"grains": "which it does not touch", "rectangle": "which is no part of it", "gate": "which it would cut"}
+    faults += [
+        Fault("ring", None, f"does not go with [{name}], {why}", repair="leave one of them out")
+        for name, why in beside.items() if getattr(scene, name)
+    ]  # fmt: skip
+    for name, side in d.sides.items():
+        if side.boundary.periodic or side.open:
+            faults.append(Fault(f"domain.{name}", side.kind, "a ring stands in a closed box", "", "wall or slip"))
+    for key, at, size in (("x", ring.x, d.width), ("y", ring.y, d.height)):
+        if not radius <= at <= size - radius:
+            problem, allowed = "the ring reaches out of the box", f"{radius:g} to {size - radius:g}"
+            faults.append(Fault(f"ring.{key}", at, problem, "m", allowed, "move it, or make it smaller"))
+    for k, it in enumerate(scene.disc):
+        times, centres = path_of(it, scene.time.end)
+        out = np.hypot(*(centres - (ring.x, ring.y)).T) + 0.5 * it.diameter > radius + TOUCH * 0.5 * it.diameter
+        if out.any():
+            time = float(times[int(out.argmax())])
+            problem = "stands in the ring" if time == 0.0 else f"runs into the ring after {time:.4g} s"
+            faults.append(Fault(f"disc[{k}]", None, problem, repair="move one of them"))
+    return faults

@@ -1,0 +1,147 @@
+"""`sweep` from Python: a scene with keys varied, run as the command does it, as a DataFrame."""
+
+from __future__ import annotations
+
+import logging
+import tomllib
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from porescale.common.api.folders import IN_PYTHON, named_folder, require_writable
+from porescale.common.api.load_scene import Settings, setting_texts
+from porescale.common.api.shipped import scene_path
+from porescale.common.core.errors import Fault, InputError, PorescaleWarning
+from porescale.common.core.extras import extra
+from porescale.common.schema import scene_file
+
+if TYPE_CHECKING:
+    import pandas
+
+    from porescale.common.api.program import Program
+    from porescale.common.studies.parameter_table import Point
+
+Vary = Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]] | str | Path
+"""Key -> values, of which every combination is run; or a mapping key -> value for each run; or a CSV or TOML file."""
+log = logging.getLogger(__name__)
+
+
+def sweep(
+    program: Program,
+    scene: Any,
+    vary: Vary,
+    out: str | Path | None,
+    *,
+    quality: str | None = None,
+    settings: Settings = (),
+    jobs: int = 1,
+    threads: int = 1,
+    again: bool = False,
+) -> pandas.DataFrame:
+    """The runs of a sweep as a DataFrame; see ``sweep`` of the packages."""
+    from porescale.common.studies.runner import FINISHED, Campaign
+    from porescale.common.studies.sweep import check_points, columns_at_end, expected, run_points
+    from porescale.common.studies.sweep_files import keys_of, lines_of
+
+    pd = extra("pandas")
+    for name, value in (("jobs", jobs), ("threads", threads)):
+        if value < 1:
+            raise InputError(Fault(name, value, "is out of range", "", ">= 1"))
+    points, texts = points_of(vary), setting_texts(settings)
+    with _as_file(program, scene, quality) as start:
+        file, name = check_points(program, start, points, quality, texts)
+        folder = named_folder(out, f"{name}_sweep", IN_PYTHON.out)
+        require_writable(folder, IN_PYTHON.out)
+        given = scene if isinstance(scene, program.scene()) else None
+        if given is not None:
+            file = _kept(program, given, folder / start.name)
+    beside = file if given is None else scene.source.file
+    rows = expected(beside) if beside is not None else []
+    campaign = Campaign(program.module, file, folder, texts, quality, threads, again)
+    command = f"{program.module}.sweep"
+    ends = run_points(program, campaign, points, jobs, rows, command, log.info)
+    for ended in ends:
+        if ended.outcome != FINISHED:
+            text = f"{ended.point.name}: {ended.outcome}: {ended.problem}"
+            warnings.warn(text, PorescaleWarning, stacklevel=3)
+    made = pd.DataFrame(lines_of(ends, rows or columns_at_end(program, ends), program.table))
+    for key in keys_of(ends):
+        made[key] = [_value(text) for text in made[key]]
+    made.attrs["folder"] = str(folder)
+    found: pandas.DataFrame = made
+    return found
+
+
+def points_of(vary: Vary) -> list[Point]:
+    """The points of a sweep; InputError where nothing is varied."""
+    from porescale.common.studies.parameter_table import Point, combinations, named, read_points
+
+    if isinstance(vary, str | Path):
+        return read_points(Path(vary))
+    if not vary:
+        repair = 'give {"contact.friction": [0.2, 0.5]}'
+        raise InputError(Fault("sweep", None, "varies nothing", repair=repair))
+    if not isinstance(vary, Mapping):
+        return named([Point("", setting_texts(each)) for each in vary])
+    faults, choices = [], []
+    for key, values in vary.items():
+        if isinstance(values, str | Mapping) or (not isinstance(values, Sequence) and not hasattr(values, "tolist")):
+            faults.append(Fault(f"vary.{key}", str(values), "is not a list of values"))
+        elif not len(values):
+            faults.append(Fault(f"vary.{key}", "[]", "holds no value", repair="leave the key out"))
+        else:
+            choices.append([setting_texts({key: value})[0] for value in values])
+    if faults:
+        raise InputError(faults)
+    return named(combinations(choices))
+
+
+@contextmanager
+def _as_file(program: Program, scene: Any, quality: str | None) -> Iterator[Path]:
+    """The file of a scene that is named; a file of one that is an object, there as long as this lasts."""
+    if not isinstance(scene, program.scene()):
+        if not isinstance(scene, str | Path):
+            problem, repair = f"is no scene of {program.name}", "give a scene, its path, or the name of a case"
+            raise InputError(Fault("scene", type(scene).__name__, problem, repair=repair))
+        yield scene_file.find(scene_path(scene, program.name))
+        return
+    if quality is not None:
+        raise InputError(Fault("quality", quality, "is for scenes by path or name", repair="give it to load"))
+    with TemporaryDirectory() as place:
+        named = str(getattr(scene, "name", "")) or "scene"
+        file = _save(scene, Path(place) / f"{named}.toml")
+        try:
+            yield file
+        except InputError as error:
+            raise InputError([replace(it, file=it.file.replace(str(file), named)) for it in error.faults]) from None
+
+
+def _save(scene: Any, file: Path) -> Path:
+    """Write the scene to a file; returns its path."""
+    return Path(scene.save(file))
+
+
+def _kept(program: Program, scene: Any, file: Path) -> Path:
+    """The scene's file in the folder of the sweep, written if it is not there; InputError where another's is."""
+    from porescale.common.schema.sections import load
+
+    if not file.exists():
+        return _save(scene, file)
+    if load(file, program.scene()) != scene:
+        problem = "holds a sweep of another scene"
+        raise InputError(Fault(IN_PYTHON.out, str(file.parent), problem, repair="name another folder"))
+    return file
+
+
+def _value(text: str) -> Any:
+    """What a point sets a key to: a number, truth or list where it is one, else the text; None where nothing."""
+    if not text:
+        return None
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text

@@ -1,0 +1,162 @@
+"""A snapshot drawn into axes of matplotlib, to scale: for notebooks and plots of the user's own."""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.patches import Patch
+
+from porescale.common.core.types import AnyArray
+from porescale.common.pictures.look import (
+    GRAIN,
+    PLATE,
+    RIM,
+    WALL,
+    Look,
+    Scale,
+    Survey,
+    length_unit,
+    magnitude,
+    rgb,
+    survey,
+    time_text,
+)
+from porescale.common.pictures.shapes import CRACK
+from porescale.common.record.model import Cloud, Snapshot
+
+WIDTH = 8.0
+"""Of a figure that is made for the axes, inches."""
+NARROW = 0.8
+"""Width over height of a view below which title and time stand in two lines."""
+
+
+def size_of(look: Look) -> tuple[float, float]:
+    """Width and height (inches) of a figure that suits the view of a look."""
+    left, right, bottom, top = look.view or (0.0, 1.0, 0.0, 1.0)
+    return WIDTH, float(np.clip((WIDTH - 2.0) * (top - bottom) / (right - left) + 1.0, 2.0, 12.0))
+
+
+def draw(snapshot: Snapshot, look: Look, axes: Axes, *, bar: bool = True) -> Axes:
+    """Draw a snapshot as its ``look`` says into ``axes``, whose limits, labels and title are set; returns them.
+
+    bar : a colour bar, or a legend of kinds, beside them.
+    """
+    found = survey([snapshot], look)
+    factor, unit = length_unit(found.view, look.plain)
+    left, right, bottom, top = (edge * factor for edge in found.view)
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    axes.set_xlabel(f"x ({unit})" if unit else "x")
+    axes.set_ylabel(f"y ({unit})" if unit else "y")
+    time = time_text(snapshot.time, found.longest, look.plain)
+    if right - left < NARROW * (top - bottom):
+        axes.set_title(f"{look.title}\n{time}" if look.title else time, loc="left")
+    else:
+        axes.set_title(look.title, loc="left")
+        axes.set_title(time, loc="right")
+    _field(snapshot, found, axes, factor)
+    cloud, shapes = look.drawn(snapshot), look.shaped(snapshot)
+    if cloud is not None and len(cloud.position):
+        _points(cloud, found, axes, factor)
+    if shapes is not None and len(shapes.position):
+        _shapes(shapes, found, axes, factor)
+    lines = look.lines(snapshot) if callable(look.lines) else look.lines
+    if len(lines):
+        axes.add_collection(LineCollection(list(np.array(lines) * factor), colors=WALL, linewidths=2.0), autolim=False)
+    if look.marks and len(marks := look.marks(snapshot)):
+        axes.add_collection(LineCollection(list(np.array(marks) * factor), colors=CRACK, linewidths=1.5), autolim=False)
+    if bar:
+        _keys(found, axes)
+    return axes
+
+
+def _field(snapshot: Snapshot, found: Survey, axes: Axes, factor: float) -> None:
+    """Cells of a grid, and what is solid in them."""
+    grid, look = found.look.painted(snapshot), found.look
+    if grid is None or found.field is None:
+        return
+    place: dict[str, Any] = {"extent": [edge * factor for edge in grid.extent], "origin": "lower", "aspect": "equal"}
+    values = magnitude(grid.cells[look.field], 2)
+    axes.imshow(values, cmap=found.field.map_name, vmin=found.field.low, vmax=found.field.high, **place)
+    if look.walls in grid.cells:
+        grey = np.zeros((*grid.shape, 4))
+        grey[..., :3] = np.array(rgb(WALL)) / 255
+        grey[..., 3] = np.clip(grid.cells[look.walls], 0.0, 1.0)
+        axes.imshow(grey, **place)
+
+
+def _points(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
+    """Discs with a rim and a spoke, or dots, all to scale."""
+    discs = "radius" in cloud.data
+    radius = np.broadcast_to(np.asarray(cloud.data.get("radius", found.dot), float), len(cloud.position))
+    there = np.isfinite(cloud.position).all(axis=1)
+    at, size = cloud.position[there] * factor, 2.0 * radius[there] * factor
+    edges = {"edgecolors": RIM, "linewidths": 0.4} if discs else {"edgecolors": "none"}
+    own = _colours(cloud, found)[there] / 255
+    dots = EllipseCollection(
+        size, size, 0.0, units="xy", offsets=at, offset_transform=axes.transData, facecolors=own, **edges
+    )
+    axes.add_collection(dots, autolim=False)
+    if discs and "angle" in cloud.data:
+        angle = np.asarray(cloud.data["angle"], float)[there]
+        tip = at + 0.4 * size[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
+        axes.add_collection(
+            LineCollection(list(np.stack((at, tip), axis=1)), colors=RIM, linewidths=0.4), autolim=False
+        )
+
+
+def _shapes(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
+    """Polygons, and segments as wide as they are thick."""
+    at, own = cloud.position * factor, _colours(cloud, found) / 255
+    if "driven" in cloud.data:
+        own = np.where(np.asarray(cloud.data["driven"])[:, None] != 0, np.array(rgb(PLATE)) / 255, own)
+    if cloud.polygons is not None and len(cloud.polygons[0]) > 1:
+        offsets, corners = cloud.polygons
+        outlines = [at[corners[first:end]] for first, end in pairwise(offsets.tolist())]
+        colours = own[corners[offsets[:-1]]]
+        axes.add_collection(PolyCollection(outlines, facecolors=colours, edgecolors=RIM, linewidths=0.4), autolim=False)
+    if cloud.lines is not None and len(cloud.lines):
+        ends = at[cloud.lines]
+        thick = np.asarray(cloud.data.get("radius", np.zeros(len(at))), float)[cloud.lines[:, 0]] * factor
+        way = ends[:, 1] - ends[:, 0]
+        across = np.column_stack((-way[:, 1], way[:, 0])) / np.maximum(np.hypot(*way.T), 1e-300)[:, None]
+        across *= thick[:, None]
+        strips = np.stack((ends[:, 0] + across, ends[:, 1] + across, ends[:, 1] - across, ends[:, 0] - across), axis=1)
+        colours = own[cloud.lines[:, 0]]
+        axes.add_collection(
+            PolyCollection(list(strips), facecolors=colours, edgecolors=RIM, linewidths=0.6), autolim=False
+        )
+
+
+def _colours(cloud: Cloud, found: Survey) -> AnyArray:
+    """Colours of points, (n, 3) of 0 to 255."""
+    look, name = found.look, found.look.colouring(cloud)
+    own = np.full((len(cloud.position), 3), rgb(GRAIN), float)
+    if name and look.kinds:
+        for kind, (_, colour) in look.kinds.items():
+            own[np.asarray(cloud.data[name]) == kind] = rgb(colour)
+    elif name and found.cloud is not None:
+        own = found.cloud.colours(magnitude(cloud.data[name], 1)).astype(float)
+    return own
+
+
+def _keys(found: Survey, axes: Axes) -> None:
+    """A colour bar for what is coloured, and the kinds with their colours."""
+    for scale in (found.field, found.cloud):
+        if scale is not None:
+            _bar(scale, axes)
+    if found.look.kinds:
+        patches = [Patch(facecolor=colour, label=label) for label, colour in found.look.kinds.values()]
+        axes.legend(handles=patches, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, handlelength=1.0)
+
+
+def _bar(scale: Scale, axes: Axes) -> None:
+    """A colour bar as high as the axes; arrows at its ends: values beyond have the last colour."""
+    norm = Normalize(scale.low * scale.factor, scale.high * scale.factor)
+    extend = "max" if scale.low == 0 else "both"
+    inset = axes.inset_axes((1.02, 0.0, 0.025, 1.0))
+    bar = axes.figure.colorbar(ScalarMappable(norm, scale.map_name), cax=inset, extend=extend, extendfrac=0.025)
+    bar.set_label(scale.label)

@@ -1,0 +1,92 @@
+"""A sweep: a scene with keys varied, every point checked before any runs, the runs compared as they end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from porescale.common.core.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from porescale.common.api.program import Program
+    from porescale.common.studies.parameter_table import Point
+    from porescale.common.studies.runner import Campaign, Ended
+
+
+def run_points(
+    program: Program,
+    campaign: Campaign,
+    points: Sequence[Point],
+    jobs: int,
+    rows: Sequence[dict[str, Any]],
+    command: str,
+    say: Callable[[str], object],
+) -> list[Ended]:
+    """Run all points, and write the files of the sweep whenever one has ended; in the order of the points.
+
+    rows : what is compared, as `expected` gives it; none: how every column of the series ends;  command : that the
+    files name;  say : as of `Campaign.all`.
+    """
+    from porescale.common.studies import sweep_files
+
+    ends: list[Ended] = []
+    order = {point.name: at for at, point in enumerate(points)}
+    for ended in campaign.all(points, jobs, say):
+        ends.append(ended)
+        ends.sort(key=lambda one: order[one.point.name])
+        sweep_files.write(campaign.folder, command, ends, rows or columns_at_end(program, ends), program.table)
+    return ends
+
+
+def check_points(
+    program: Program, scene: Path, points: Sequence[Point], quality: str | None, settings: Sequence[str]
+) -> tuple[Path, str]:
+    """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs."""
+    from porescale.common.schema.sections import open_scene
+
+    faults: dict[str, Fault] = {}  # by what they say: what is wrong with every point is said of the first
+    for point in points:
+        try:
+            overrides = (*settings, *point.settings)
+            opened = open_scene(scene, program.scene(), quality=point.quality or quality, overrides=overrides)
+            program.report(opened.scene)
+        except InputError as error:
+            for fault in error.faults:
+                place = f"{point.name}, {fault.file}" if fault.file else point.name
+                faults.setdefault(fault.line(), replace(fault, file=place))
+    if faults:
+        raise InputError(list(faults.values()))
+    return opened.file, opened.name
+
+
+def expected(scene: Path) -> list[dict[str, Any]]:
+    """The rows of expected.toml beside the scene file that name a number to read, none where there is none.
+
+    Raises InputError with what is wrong with any of them.
+    """
+    from porescale.common.schema.scene_file import read
+    from porescale.common.studies.quantities import wrong
+
+    file = scene.parent / "expected.toml"
+    if not file.is_file():
+        return []
+    rows = read(file).get("expected", [])
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        repair = "write [[expected]]"
+        raise InputError(Fault("expected", None, "is not a list of tables", repair=repair, file=str(file)))
+    readable = [row for row in rows if {"name", "column", "at"} <= row.keys()]
+    faults = [Fault(f"expected {row['name']!r}", None, it, file=str(file)) for row in readable if (it := wrong(row))]
+    if faults:
+        raise InputError(faults)
+    return readable
+
+
+def columns_at_end(program: Program, ends: Sequence[Ended]) -> list[dict[str, Any]]:
+    """How every column of the series ends, in the first point that has one."""
+    for ended in ends:
+        if ended.outcome == "finished":
+            names = list(program.table(ended.folder, "series"))[1:]
+            return [{"name": name, "column": name, "at": "end"} for name in names]
+    return []

@@ -1,0 +1,197 @@
+"""Measuring a flow from pictures in Python: what the commands of `piv` do, with arrays and files alike."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from porescale.common.core.errors import Fault, InputError, PorescaleWarning
+from porescale.common.core.types import AnyArray
+from porescale.common.core.units import to_si
+
+if TYPE_CHECKING:
+    from porescale.common.record.open_run import Run
+    from porescale.piv.fields.field import Field
+    from porescale.piv.images.film import Film
+
+Path_ = str | Path
+Films = Path_ | Sequence[Path_] | Sequence[AnyArray] | AnyArray
+
+
+def measure(
+    film: Films,
+    second: Path_ | AnyArray | None = None,
+    *,
+    window: int = 16,
+    overlap: float = 0.5,
+    search: int = 16,
+    smooth: bool = True,
+    no_slip: bool = False,
+    mask: Path_ | AnyArray | None = None,
+    polygon: Sequence[str] = (),
+    background: Literal["none", "mean", "least"] = "none",
+    average: bool = False,
+    start: int = 0,
+    end: int | None = None,
+    step: int = 1,
+    region: tuple[int, int, int, int] | None = None,
+    scale: float | str | None = None,
+    interval: float | str | None = None,
+    time: float | str = 0.0,
+    out: Path_ | None = None,
+    overlay: bool = False,
+) -> Field | list[Field]:
+    """Displacements between pictures, with validity, correlation and uncertainty for every vector.
+
+    film : a film, a stack of pictures in one TIFF file, a folder or pattern of pictures; or files, or arrays (rows,
+    columns), grey, of 8 or 16 bits or floating, in their order;  second : the second picture of a pair.
+
+    window : px, of the last pass, 64, 32, 16 or 8;  overlap : of neighbouring windows;  search : px, the largest
+    displacement looked for;  smooth : no more than the noise asks for;  no_slip : no flow at rims of solids at rest;
+    mask : file of a bitmap (solid white), film or stack of them, "bright" or "dark" to segment, or an array, True in
+    solids;  polygon : "x,y x,y x,y …" px, solid;  background : what every frame is taken less by;  average : one field
+    from all pairs of a steady flow;  start, end, step : which frames;  region : left, top, right, bottom px;  scale :
+    length of a pixel (m or "0.1 mm"), with which the field is in m and m/s, y up;  interval : time between two frames
+    (s or "5 ms"; a film may say it itself);  time : of frame 0;  out : folder for the files that `piv measure` writes;
+    overlay : a film with arrows among them.
+
+    Two pictures, or all averaged, give a `Field`; a film of more gives a list of them, in time.  Pairs in a film that
+    show nothing give a PorescaleWarning and no valid vector.  Raises InputError for what cannot be read or measured.
+    """
+    from porescale.piv.estimate.measure import Settings
+    from porescale.piv.estimate.series import Shots
+    from porescale.piv.pipeline import Measurement, write_fields
+
+    try:
+        if no_slip and mask is None and not polygon:
+            raise InputError(Fault("no_slip", None, "there are no solids", repair="give mask or polygon"))
+        if background not in ("none", "mean", "least"):
+            raise InputError(Fault("background", str(background), "is unknown", allowed="none, mean, least"))
+        frames = _film(film, second, start=start, end=end, step=step, region=region)
+        seconds = 1 / frames.rate if interval is None and frames.rate else _si("interval", interval, "s")
+        pixel = _si("scale", scale, "m")
+        if pixel is not None and seconds is None:
+            repair = 'give the time between frames: "5 ms"'
+            raise InputError(Fault("interval", None, "is needed with scale", repair=repair))
+        solid = mask if mask is None or isinstance(mask, np.ndarray) else str(mask)
+        shots = Shots(frames, solid, tuple(polygon), background)
+        settings = Settings(window=window, overlap=overlap, search=search, smooth=smooth, no_slip=no_slip)
+        zero = _si("time", time, "s") or 0.0
+        work = Measurement(shots, settings, average, pixel, seconds, zero)
+        fields: list[Field] = []
+
+        def kept() -> Iterator[Field]:
+            """Fields as they come, kept with their times."""
+            for number, field in enumerate(work.fields(_warn)):
+                middle = None if average else work.time(number)
+                fields.append(replace(field, time=middle))
+                yield field
+
+        write_fields(work, kept(), None if out is None else Path(out), overlay=overlay)
+    except InputError as error:
+        raise _in_python(error) from None
+    return fields[0] if work.total == 1 else fields
+
+
+def render(
+    run: Run | Path_,
+    out: Path_ | None = None,
+    *,
+    scale: float | str | None = None,
+    interval: float | str | None = None,
+    start: float | str | None = None,
+    end: float | str | None = None,
+    exposure: float = 0.0,
+    density: float = 0.05,
+    diameter: float = 2.8,
+    noise: float = 3.0,
+    grains: Literal["bright", "dark"] = "bright",
+    seed: int = 0,
+) -> Path:
+    """Film a run with a virtual camera: tracers carried by its flow, as pictures, masks and a film.
+
+    run : with fluid, or its folder;  out : folder for frames, masks, film and shooting.json (None: piv in the run
+    folder);  scale : length of a pixel, m or "0.1 mm" (None: 1024 px the longer side);  interval : between frames, s or
+    "5 ms" (None: 4 px of the fastest flow);  start, end : times of the run;  exposure : share of the interval that the
+    shutter is open;  density : tracers a pixel;  diameter : of one, px;  noise : grey levels;  grains : look of solids.
+
+    Gives the folder of the frames, for `measure`; the masks are beside it.  Raises InputError.
+    """
+    from porescale.common.record.open_run import open_run
+    from porescale.piv.images.camera import GREYS, shot_of
+    from porescale.piv.images.filmed import write_frames
+    from porescale.piv.images.synth import Camera
+
+    opened = open_run(run) if isinstance(run, str | Path) else run
+    folder = opened.folder / "piv" if out is None else Path(out)
+    if grains not in ("bright", "dark"):
+        raise InputError(Fault("grains", str(grains), "is unknown", allowed="bright, dark"))
+    try:
+        shot = shot_of(
+            opened,
+            Camera(density=density, diameter=diameter, noise=noise, disc=GREYS[grains]),
+            scale=_si("scale", scale, "m"),
+            interval=_si("interval", interval, "s"),
+            start=_si("start", start, "s"),
+            end=_si("end", end, "s"),
+            exposure=exposure,
+            seed=seed,
+        )
+        write_frames(opened, shot, folder)
+    except InputError as error:
+        raise _in_python(error) from None
+    return folder / "frames"
+
+
+def _film(film: Films, second: Path_ | AnyArray | None, **chosen: Any) -> Film:
+    """Files or arrays as a film."""
+    from porescale.piv.images.film import Held, open_film
+
+    many = film if second is None else [film, second]
+    items: list[Any] = [many] if isinstance(many, str | Path) else list(many)
+    if not all(isinstance(it, np.ndarray) for it in items):
+        if not all(isinstance(it, str | Path) for it in items):
+            problem, repair = "is neither files nor arrays", "give paths alone, or arrays alone"
+            raise InputError(Fault("film", ", ".join(type(it).__name__ for it in items), problem, repair=repair))
+        return open_film(items, **chosen)
+    for number, it in enumerate(items):
+        if it.ndim != 2 or it.dtype.kind not in "uif" or (it.dtype.kind == "f" and not np.isfinite(it).all()):
+            given = f"picture {number}: {' x '.join(map(str, it.shape))} of {it.dtype}"
+            raise InputError(Fault("film", given, "is no grey picture", allowed="(rows, columns) of finite numbers"))
+    if not items:
+        raise InputError(Fault("film", None, "holds no pictures", repair="give two or more"))
+    open_film(["-", "-"], **chosen)  # checks start, end and step
+    return Held((), pictures=tuple(items), **chosen)
+
+
+def _si(key: str, value: float | str | None, unit: str) -> float | None:
+    """A length or time in SI units, positive (times of frames: zero too); None stays."""
+    if value is None:
+        return None
+    try:
+        found = to_si(value, unit)
+    except ValueError as error:
+        raise InputError(Fault(key, value, str(error), unit)) from None
+    least = ">= 0" if key in ("time", "start", "end") else "> 0"
+    if found < 0 or (found == 0 and least == "> 0"):
+        raise InputError(Fault(key, value, "is out of range", unit, least))
+    return found
+
+
+def _warn(text: str) -> None:
+    warnings.warn(text, PorescaleWarning, stacklevel=6)
+
+
+def _in_python(error: InputError) -> InputError:
+    """The faults of a command under the names of arguments: "--no-slip" is no_slip here."""
+    return InputError([replace(it, key=_words(it.key), repair=_words(it.repair)) for it in error.faults])
+
+
+def _words(text: str) -> str:
+    return re.sub(r"--([a-z]+(?:-[a-z]+)*)", lambda found: found.group(1).replace("-", "_"), text)
