@@ -79,6 +79,13 @@ SOIL = ("mean_stress", "plastic_strain", "velocity")
 """What is shown of soil at the end, besides how far it has come."""
 
 
+def measure(run: Run, scene: Scene) -> dict[str, dict[str, list[float]]]:
+    """What the measuring sections of ``scene`` read at every snapshot of a run."""
+    from continuum_sph.measure_run import measure_run
+
+    return measure_run(run, scene)
+
+
 PROGRAM = Program(
     name="continuum-sph",
     module="continuum_sph",
@@ -89,5 +96,7 @@ PROGRAM = Program(
     report=report,
     show=show,
     look=look_of,
+    measured=("probe", "level"),
+    measure=measure,
     formerly=FORMERLY,
 )

@@ -71,6 +71,13 @@ def look(run: Run) -> Look:
     return look_of(run)
 
 
+def measure(run: Run, scene: Scene) -> dict[str, dict[str, list[float]]]:
+    """What the measuring sections of ``scene`` read at every snapshot of a run."""
+    from porescale.builders.measure_run import measure_run
+
+    return measure_run(run, scene)
+
+
 PROGRAM = Program(
     name="porescale",
     module="porescale",
@@ -81,4 +88,6 @@ PROGRAM = Program(
     report=report,
     show=show,
     look=look,
+    measured=("probe", "flux", "line", "region"),
+    measure=measure,
 )

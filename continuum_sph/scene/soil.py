@@ -1,7 +1,7 @@
 """The section of the soil."""
 
 import math
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -96,6 +96,12 @@ class SoilSection(Section):
     sides: Literal["hold", "slip"] = "slip"
     body: tuple[Body, ...] = pydantic.Field(min_length=1, description="pieces of ground")
     numerics: SoilNumerics = SoilNumerics()
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        about = "file of porescale homogenise, whose numbers hold where the scene has none of its own"
+        material = {"type": "string", "description": about}
+        return {**schema, "properties": {**schema["properties"], "material": material}}
 
     @property
     def height(self) -> float:

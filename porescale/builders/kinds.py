@@ -11,6 +11,7 @@ from porescale.builders.initial.frames import disc_count, free_rows
 from porescale.builders.initial.rock import has_plates
 from porescale.builders.stepper import Stepper
 from porescale.builders.system import System
+from porescale.common.compiled.own import OwnLaw
 from porescale.scene.scene import Scene
 
 
@@ -41,6 +42,12 @@ def _measures_grains(system: System) -> bool:
 
 
 KINDS = (
+    Kind((), lambda it: bool(it.scene.fluid and isinstance(it.scene.fluid.body_force, OwnLaw)), "user_forces.OwnForce"),
+    Kind(
+        (),
+        lambda it: any(isinstance(side.velocity, OwnLaw) for side in it.scene.domain.sides.values()),
+        "user_forces.OwnInflow",
+    ),
     Kind(("grains",), _free, "grain_series.GrainSeries"),
     Kind(("sleep",), lambda it: bool(it.grains and it.scene.sleep), "sleep.SleepPart"),
     Kind(("fluid",), lambda it: it.fluid is not None, "flow_series.FlowSeries"),

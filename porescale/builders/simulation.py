@@ -114,7 +114,7 @@ class Simulation(ShownSimulation):
             words.append(f"{self.fluid.nx} x {self.fluid.ny} cells of {self.derived.scales.spacing:.4g} m")
         if self.grains:
             count = disc_count(self.grains)
-            words += [f"{count} grains"] if count else []
+            words += [f"{count} grain{'s' * (count > 1)}"] if count else []
             words += [f"{len(self.frames)} bodies of segments"] if self.frames else []
         return ", ".join(words)
 

@@ -34,7 +34,7 @@ from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
 from porescale.coupling.solid.choose import solid_operator as solid_operator_of
 from porescale.coupling.weighting.choose import choose_weight, fitting_weight
 from porescale.coupling.weighting.law import weights_of
-from porescale.lbm.collision.choose import third_order_rate, without_force
+from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.moments import moment_fields
 
@@ -156,6 +156,11 @@ class SaturatedCells:
         if self.polygons:
             self._direct[discs:movers] = -self.polygons.covered_area[:, None] * force
 
+    def _follow_force(self, force: Reals, centre: Reals) -> None:
+        """What a body force of every cell (2, ny, nx) adds to discs at once: as if it were that at their centres."""
+        x, y = (np.clip(centre[:, a].astype(np.int64), 0, self._shape[1 - a] - 1) for a in (0, 1))
+        self._direct[: len(self.radius)] = -np.pi * self.covering_radius[:, None] ** 2 * force[:, y, x].T
+
     @property
     def covered(self) -> Reals:
         """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); computed on request."""
@@ -258,6 +263,8 @@ class SaturatedCells:
     def advance(self, fluid: Fluid, centre: Reals, velocity: Reals, spin: Reals) -> None:
         """One fluid step with the bodies where they are; fills the loads."""
         motion = self._place(centre, velocity, spin)
+        if fluid.force_field is not None:
+            self._follow_force(fluid.force_field, centre)
         if self.bodies:
             self.bodies.before(fluid, self._patches, self._shift, self._slow_load)
         fluid.advance(
@@ -285,7 +292,7 @@ class SaturatedCells:
         is the mean of what crosses its faces: in a steady flow the same through every section of the box.  The state
         is as before, to the bit.  Allocates three fields and a few rows.
         """
-        motion, law, f = self._place(centre, velocity, spin), without_force(fluid.law), fluid.populations
+        motion, law, f = self._place(centre, velocity, spin), fluid.law_of_sweep, fluid.populations
         parity, ny = fluid.step % 2, fluid.ny
         with fluid.readable():
             rho, jx, jy = moment_fields(f, parity)

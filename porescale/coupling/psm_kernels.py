@@ -21,7 +21,17 @@ from porescale.coupling.solid.law import (
     rates,
 )
 from porescale.coupling.weighting.law import weight
-from porescale.lbm.collision.law import Macroscopic, collide_row, half_force, moments, numbers, shear_rate
+from porescale.lbm.collision.law import (
+    Macroscopic,
+    cell_law,
+    collide_row,
+    half_force,
+    moments,
+    numbers,
+    part_law,
+    row_law,
+    shear_rate,
+)
 from porescale.lbm.stream import slots
 
 AT_ONCE = 512
@@ -107,9 +117,11 @@ def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
     weights_row(s, sx, sy, (inverse, b, first_rate, second_rate), weighting, solid)
     c = numbers(law.rate)
     one = c.one
-    half_x, half_y = half_force(law)
+    fluids = part_law(first, last, law)
     soft = is_soft(solid)
     for x in range(s.shape[0]):
+        here = cell_law(x, fluids)
+        half_x, half_y = half_force(here)
         f = (a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
         d, jx, jy = moments(f)
         rho = one + d
@@ -128,8 +140,8 @@ def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
         kx, ky = jx + hx, jy + hy
         cell = SolidCell(e, held, theta, vx, vy, hx, hy)
         m = Macroscopic(d, kx, ky, kx * specific_volume, ky * specific_volume)
-        rate = shear_rate(f, m, law)
-        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide_with_solid(f, cell, shares, m, rate, law, solid)
+        rate = shear_rate(f, m, here)
+        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide_with_solid(f, cell, shares, m, rate, here, solid)
         a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
         a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8
         ta, tx, ty = momentum_to_solid(cell, rho, jx, jy, rate, solid)
@@ -196,5 +208,5 @@ def sweep(f, parity, band_order, height, rows, patches, motion, periodic_x, work
             planes = slots(f, y + 1, parity)
             saturated_row(
                 y, planes, rows, patches, motion, periodic_x, ramp, row_load, scratch[mine], weights[mine],
-                (weighting, solid, law),
+                (weighting, solid, row_law(y, law)),
             )  # fmt: skip

@@ -107,7 +107,7 @@ def shear_stress(fluid: Fluid) -> tuple[Reals, Reals]:
     law = fluid.law
     with fluid.readable():
         h = [_slots(fluid, i).astype(float) for i in range(9)]
-    fx, fy = float(law.fx), float(law.fy)
+    fx, fy = (float(law.fx), float(law.fy)) if fluid.force_field is None else fluid.force_field.astype(float)
     basis = np.stack([np.ones(9), CX, CY, CX**2, CY**2, CX * CY])
     excess, jx, jy, xx, yy, xy = np.einsum("mi,iyx->myx", basis, np.stack(h))
     rho, jx, jy = 1 + excess, jx + 0.5 * fx, jy + 0.5 * fy

@@ -23,6 +23,7 @@ from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.boundary.thin_plate import Plate, exchange
 from porescale.lbm.collision.choose import choose, without_force
 from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.field import field_version
 from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.moments import moment_fields
 from porescale.lbm.stream import sweep
@@ -36,6 +37,7 @@ ROWS_AT_ONCE = 64
 class Fluid:
     """A box of nx by ny cells of fluid in lattice units, at rest with density 1 until ``set_flow``.
 
+    force_field (2, ny, nx): force density of every cell, None where it is uniform;
     populations (9, ny + 2, nx + 2): slots, see lattice.py;  step: steps done;  plates: of no thickness, see
     boundary/thin_plate.py.  A step allocates nothing.
     """
@@ -59,6 +61,8 @@ class Fluid:
         self.sides = sides or Sides()
         self.law = choose(operator, relaxation_time, force, dtype, magic=magic, smagorinsky=smagorinsky)
         self.force = force
+        self.force_field: NDArray[np.floating] | None = None
+        self._law_of_cells: Any = None
         self.populations: NDArray[np.floating] = np.zeros((9, ny + 2, nx + 2), dtype)
         self._flat = self.populations.reshape(-1)
         self.links = BoundaryLinks(nx, ny, self.sides, dtype)
@@ -90,16 +94,35 @@ class Fluid:
         odd = self.step % 2
         if odd:
             self._bounce_off_plates(+1.0)
-        cells(self.populations, odd, *extra, without_force(self.law))
+        cells(self.populations, odd, *extra, self.law_of_sweep)
         if odd:
             self._bounce_off_plates(-1.0)
-        self.links.close(self._flat, odd, (self.law.fx, self.law.fy))
+        field = self.force_field
+        self.links.close(self._flat, odd, (self.law.fx, self.law.fy) if field is None else (field[0], field[1]))
         self.step += 1
+
+    @property
+    def law_of_sweep(self) -> Any:
+        """The law of collision as sweeps take it: without a force that is zero, or with the force of every cell."""
+        return without_force(self.law) if self._law_of_cells is None else self._law_of_cells
 
     def _bounce_off_plates(self, sign: float) -> None:
         """Exchange the slots of all links that plates cut, before an odd sweep (+1) and after it (-1)."""
         for p in self.plates:
             exchange(self._flat, p.first, p.second, p.pull, p.links_from(), p.signed_speed(sign))
+
+    def set_force_field(self, force: NDArray[np.floating]) -> None:
+        """Give every cell a force density of its own, (2, ny, nx) of the populations' type.
+
+        The array is kept and read in every step: its owner may change it between two.  Raises ValueError at another
+        shape or type, or where there is a uniform force.
+        """
+        if force.shape != (2, self.ny, self.nx) or force.dtype != self.populations.dtype:
+            raise ValueError(f"force of every cell: {force.shape} of {force.dtype}")
+        if any(self.force):
+            raise ValueError("a fluid has a uniform force or one of every cell")
+        self.force_field = force
+        self._law_of_cells = field_version(type(self.law))(*self.law, force[0], force[1])
 
     def set_side_velocity(self, side: str, velocity: Any) -> None:
         """Give a velocity side another velocity, (ux, uy) or (n, 2), from the next step on.
@@ -133,8 +156,9 @@ class Fluid:
         """
         with self.readable():
             rho, jx, jy = moment_fields(self.populations, self.step % 2)
-        for j, force in ((jx, self.force[0]), (jy, self.force[1])):
-            if force:
+        forces: Any = self.force if self.force_field is None else self.force_field
+        for j, force in ((jx, forces[0]), (jy, forces[1])):
+            if np.any(force):
                 j += 0.5 * force if solid is None else 0.5 * force * (1.0 - solid)
             j /= rho
         return rho, jx, jy

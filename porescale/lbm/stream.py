@@ -1,7 +1,7 @@
 """Sweeps over the lattice: the slots of each row, passed to a row kernel.  See lattice.py for the in-place pattern."""
 
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.lbm.collision.law import collide_row
+from porescale.lbm.collision.law import collide_row, row_law
 
 
 @inline
@@ -53,4 +53,4 @@ def sweep(f, parity, law):
     """
     n = f.shape[2] - 2
     for y in prange(1, f.shape[1] - 1):
-        collide_row(slots(f, y, parity), 0, n, law)
+        collide_row(slots(f, y, parity), 0, n, row_law(y - 1, law))

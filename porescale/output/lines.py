@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,15 +24,23 @@ LAMBDA = "hydraulic radius ratio ()"
 
 
 def write_lines(run: Run, folder: Path) -> list[Path]:
-    """Write lines.csv, a row a point: of every line in its turn, of every snapshot; [] if the scene has no line.
-
-    Lines are numbered from 0 in the scene's order.  Velocity is interpolated, that of the solid in it; pressure over
-    the fluid share of cells: nan inside of grains.
-    """
-    scene: dict[str, Any] = run.card["scene"]
-    lines = scene.get("line") or []
+    """Write lines.csv, a row a point: of every line in its turn, of every snapshot; [] if the scene has no line."""
+    lines = run.card["scene"].get("line") or []
     if not lines:
         return []
+    table = profiles(run, lines)
+    path = folder / "lines.csv"
+    write_text(path, csv_text(list(table), [list(map(repr, row)) for row in zip(*table.values(), strict=True)]))
+    return [path]
+
+
+def profiles(run: Run, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
+    """Columns of lines.csv for ``lines``, tables as [[line]] has them, at every snapshot.
+
+    Lines are numbered from 0 in their order.  Velocity is interpolated, that of the solid in it; pressure over the
+    fluid share of cells: nan inside of grains.
+    """
+    scene: dict[str, Any] = run.card["scene"]
     grid = run.snapshot(0).grids["fields"]
     ny, nx = grid.shape
     kinds = (boundaries().get(scene["domain"][side]["kind"]) for side in ("left", "bottom"))  # None: since gone
@@ -52,7 +61,6 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
                 at.in_fluid(cells["pressure"], solid), at.of(solid),
             )  # fmt: skip
             for row in np.stack(columns, axis=1).tolist():
-                rows.append([repr(float(snapshot.time)), number, *map(repr, row), *([repr(ratio)] if ratio else [])])
-    path = folder / "lines.csv"
-    write_text(path, csv_text([*COLUMNS, LAMBDA] if ratio else COLUMNS, rows))
-    return [path]
+                rows.append([float(snapshot.time), number, *row, *([ratio] if ratio else [])])
+    names = [*COLUMNS, LAMBDA] if ratio else COLUMNS
+    return {name: list(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}

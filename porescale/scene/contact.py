@@ -7,8 +7,9 @@ import pydantic
 
 from porescale.common.compiled.own import CONTACT_LAW, OwnLaw, number_of
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import choice, number
 from porescale.common.schema.messages import nearest
-from porescale.common.schema.own import OrOwn, folder_of, own_law
+from porescale.common.schema.own import OWN_LAW, OrOwn, folder_of, own_law
 from porescale.common.schema.sections import Quantity, Refused, Section, quantity
 from porescale.scene.ranges import FRICTION
 
@@ -77,7 +78,9 @@ class Contact(Touch):
     "laws.py:NAME": a function of a user's file, whose own keys stand beside the others.
     """
 
-    law: Annotated[str | OwnLaw, OrOwn(CONTACT_LAW)] = "linear"
+    law: Annotated[str | OwnLaw, OrOwn(CONTACT_LAW)] = pydantic.Field(
+        "linear", description='contact law, or "laws.py:NAME"'
+    )
     own: dict[str, float] = pydantic.Field(
         {}, description="numbers of a law of a user's file, by key; in scenes they may stand in [contact] itself"
     )
@@ -101,6 +104,14 @@ class Contact(Touch):
     )
     pair: tuple[Pair, ...] = ()
 
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        keys, about = schema["properties"], schema["properties"]["law"]
+        ours = {**schema, "properties": {**keys, "law": choice(LAWS, about)}}
+        own = {**schema, "properties": {**keys, "law": {**OWN_LAW, "description": about["description"]}}}
+        own |= {"required": ["law"], "additionalProperties": number()}  # its numbers, by keys that only it knows
+        return {"description": schema["description"], "anyOf": [ours, own]}
+
     @pydantic.model_validator(mode="before")
     @classmethod
     def _own_keys(cls, table: Any, info: pydantic.ValidationInfo) -> Any:
@@ -112,6 +123,11 @@ class Contact(Touch):
         except Refused:  # said of the key ``law``; whether other keys are the law's cannot be known
             return {key: value for key, value in table.items() if key in cls.model_fields and key != "own"}
         return table if law is None else {**_without(table, law), "own": _numbers(table, law)}
+
+    def __hash__(self) -> int:
+        """Equal sections have equal hashes."""
+        values = (getattr(self, name) for name in type(self).model_fields if name != "own")
+        return hash((*values, *sorted(self.own.items())))
 
     def numbers(self) -> dict[str, float]:
         """The numbers that are given, by key, those of an own law among them."""

@@ -4,8 +4,11 @@ from typing import Any, Literal
 
 import pydantic
 
+from porescale.common.compiled.own import INFLOW, OwnLaw
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import with_units, word_or
 from porescale.common.schema.messages import nearest
+from porescale.common.schema.own import or_own
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.lbm.boundary.choose import boundaries, boundary
 from porescale.lbm.boundary.law import Boundary
@@ -25,7 +28,8 @@ class Side(Section):
 
     "wall" holds the fluid, and may slide along itself with ``speed``;  "slip" lets it slide (a flat water surface);
     "periodic" joins opposite sides;  "velocity" lets it in or out with a mean ``velocity``, uniform or as the parabola
-    between two walls;  "pressure" holds the reduced ``pressure`` (what is above hydrostatic) and lets it in or out.
+    between two walls, or as the function (s, t) of a user's file, "laws.py:NAME";
+    "pressure" holds the reduced ``pressure`` (what is above hydrostatic) and lets it in or out.
     A "wall" of a dry scene may also move, with ``velocity``, or so that the grains press on it with a ``stress`` or
     ``force``, > 0 for compression, no faster than ``fastest``.
     For grains every side but a periodic one is solid: an inlet or outlet is a screen.
@@ -33,12 +37,18 @@ class Side(Section):
 
     kind: Kind = "wall"
     speed: float = quantity("m/s", 0.0, **SPEED, help="speed of a wall along itself, to the right or up")
-    velocity: tuple[float, float] | None = quantity("m/s", None, **SPEED, help="mean velocity of the fluid at the side")
+    velocity: tuple[float, float] | OwnLaw | None = or_own(
+        INFLOW, quantity("m/s", None, **SPEED, help="mean velocity of the fluid at the side")
+    )
     profile: Literal["uniform", "parabola"] = "uniform"
     pressure: float | None = quantity("Pa", None, ge=-1e9, le=1e9, help="pressure above hydrostatic")
     stress: TimeFunction | None = None
     force: TimeFunction | None = None
     fastest: float | None = quantity("m/s", None, gt=0, le=1e4, help="largest speed under stress or force")
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        return word_or(KINDS, with_units(schema, SERVO))
 
     @pydantic.model_validator(mode="before")
     @classmethod
@@ -68,6 +78,13 @@ class Side(Section):
         if "velocity" in self.boundary.required and self.velocity is None:
             repair = f'write {{ kind = "{self.kind}", velocity = [0.01, 0] }}'
             faults.append(Fault("velocity", None, "is missing", "m/s", repair=repair))
+        if isinstance(self.velocity, OwnLaw) and self.boundary.movable:
+            repair = "give two numbers"
+            faults.append(
+                Fault("velocity", self.velocity.reference, "an inflow is of the fluid, this is a wall", repair=repair)
+            )
+        if isinstance(self.velocity, OwnLaw) and self.profile != "uniform":
+            faults.append(Fault("profile", self.profile, f"{self.velocity} has its own", repair="leave it out"))
         if self.boundary.movable:
             faults += check_servo(self, self.velocity is not None)
         return faults
@@ -85,7 +102,7 @@ class Side(Section):
     @property
     def peak(self) -> float:
         """Largest speed that the side gives the fluid, m/s."""
-        if self.velocity is None:
+        if self.velocity is None or isinstance(self.velocity, OwnLaw):  # whose peak is sampled, where time is known
             return abs(self.speed)
         mean = float((self.velocity[0] ** 2 + self.velocity[1] ** 2) ** 0.5)
         return mean * (PARABOLA_PEAK if self.profile == "parabola" else 1.0)
@@ -96,6 +113,8 @@ class Side(Section):
             return f"{self.kind} moving at {self.speed:g} m/s"
         if self.stress or self.force:
             return f"{self.kind} under {'stress' if self.stress else 'force'}"
+        if isinstance(self.velocity, OwnLaw):
+            return f"velocity of {self.velocity}"
         if self.velocity is not None:
             u, v = self.velocity
             return (

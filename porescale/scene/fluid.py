@@ -1,12 +1,15 @@
 """[fluid]: its numbers, its lattice, and the choice of operators by name."""
 
 from collections.abc import Collection
-from typing import Literal
+from typing import Any, Literal
 
 import pydantic
 
+from porescale.common.compiled.own import BODY_FORCE, OwnLaw
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import choice
 from porescale.common.schema.messages import nearest
+from porescale.common.schema.own import or_own
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import NAMES
@@ -39,12 +42,20 @@ class Fluid(Section):
         None, description="soft: for grains that the fluid passes fast (left out: with the operator central)"
     )
     precision: Literal["float64", "float32"] = pydantic.Field("float64", description="precision of the populations")
-    body_force: tuple[float, float] = quantity(
-        "N/m^3", (0.0, 0.0), ge=-1e9, le=1e9, help="force per volume on the fluid (a pressure gradient, reversed)"
+    body_force: tuple[float, float] | OwnLaw = or_own(
+        BODY_FORCE,
+        quantity(
+            "N/m^3", (0.0, 0.0), ge=-1e9, le=1e9, help="force per volume on the fluid (a pressure gradient, reversed)"
+        ),
     )
     velocity: tuple[float, float] = quantity(
         "m/s", (0.0, 0.0), ge=-1e4, le=1e4, help="velocity of all of the fluid at the start"
     )
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        keys = schema["properties"]
+        return {**schema, "properties": keys | {key: choice(names, keys[key]) for key, names in CHOICES.items()}}
 
     @pydantic.field_validator("operator", "solid_operator", "weighting")
     @classmethod

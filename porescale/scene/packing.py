@@ -46,6 +46,11 @@ class Packing(Section):
     pressure: float | None = quantity("Pa", None, gt=0, le=1e12, help="mean stress to compress to, without gravity")
     material: str = pydantic.Field("", description="name of its material (default: the first)")
 
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        needed = [key for key in schema["required"] if key != "diameter"]
+        return {**schema, "required": needed, "anyOf": [{"required": ["diameter"]}, {"required": ["grading"]}]}
+
     def _faults(self) -> list[Fault]:
         try:
             if self.log_spread is not None or (self.compress and not self.grading):

@@ -43,7 +43,7 @@ class Scene(SceneBase):
 
     elsewhere: ClassVar[Mapping[str, str]] = {"tank": "continuum-sph"}
 
-    title: str = ""
+    title: str = pydantic.Field("", description="title, of pictures and reports")
     gravity: tuple[float, float] = quantity("m/s^2", (0.0, -GRAVITY), ge=-1e6, le=1e6, help="acceleration of free fall")
     domain: Domain
     time: Time
@@ -75,6 +75,12 @@ class Scene(SceneBase):
     homogenise: Homogenise | None = None
     lubrication: Lubrication | None = None
     sleep: Sleep | None = None
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        bonds = schema["properties"]["bonds"]
+        schema["properties"]["bonds"] = {"anyOf": [bonds["items"], {"type": "array", "items": bonds["items"]}]}
+        return schema
 
     @pydantic.field_validator("bonds", mode="before")
     @classmethod

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import pydantic
 
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import number, with_units, word_or
 from porescale.common.schema.sections import Quantity, Refused, Section, quantity
 
 LARGEST = 1e12
@@ -27,6 +28,14 @@ class TimeFunction(Section):
     phase: float = quantity("rad", 0.0, ge=-1e3, le=1e3, help="phase of the sine at time 0")
     times: tuple[float, ...] = quantity("s", (), ge=0, le=1e9, help="times of the table")
     values: tuple[float, ...] = ()
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        for key in ("mean", "amplitude"):
+            schema["properties"][key] = {**number(), "default": 0.0}
+        schema["properties"]["values"]["items"] = number()
+        pair = {"type": "array", "prefixItems": [number(), number()], "minItems": 2, "maxItems": 2}
+        return {"anyOf": [number(), {"type": "array", "items": pair}, schema]}
 
     def _faults(self) -> list[Fault]:
         if len(self.times) != len(self.values):
@@ -118,6 +127,10 @@ class Timed(Section):
 
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {}
 
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        return with_units(schema, cls.UNITS)
+
     @pydantic.model_validator(mode="before")
     @classmethod
     def _time_functions(cls, table: Any) -> Any:
@@ -141,6 +154,10 @@ class Component(Section):
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {
         "velocity": ("m/s", "velocity"), "displacement": ("m", "displacement"), "force": ("N/m", "force"),
     }  # fmt: skip
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        return word_or(("free",), with_units(schema, cls.UNITS))
 
     @pydantic.model_validator(mode="before")
     @classmethod

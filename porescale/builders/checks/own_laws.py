@@ -1,5 +1,6 @@
 """Laws of a user's file: whether they compile, and whether what they return can be used."""
 
+import math
 from collections.abc import Sequence
 
 from porescale.common.compiled.own import OwnLaw
@@ -8,6 +9,12 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.own import OwnContact, numbers_of
 from porescale.scene.contact import Contact
+from porescale.scene.scene import Scene
+
+PLACES, TIMES = 16, 200
+"""Places along each direction, and times, at which laws of place and time are looked at before a run."""
+MOST = 1e6
+"""Largest speed (m/s) and acceleration (m/s²) that a law may give: what lies beyond is a slip."""
 
 
 def check_own_contact(contact: Contact, laws: Sequence[ContactLaw], mass: float, radius: float) -> None:
@@ -27,6 +34,49 @@ def check_own_contact(contact: Contact, laws: Sequence[ContactLaw], mass: float,
         if problem:
             repair = f"correct {contact.law.name} in {contact.law.place}"
             raise InputError(Fault("contact.law", contact.law.reference, problem, repair=repair))
+
+
+def inflow_peak(scene: Scene, name: str) -> float:
+    """Largest speed (m/s) of the own law of a side over the run; 0 where it has none.  InputError where it is no number
+    somewhere."""
+    side, box = scene.domain.side(name), scene.domain
+    if not isinstance(side.velocity, OwnLaw):
+        return 0.0
+    length = box.height if name in ("left", "right") else box.width
+    places = [((k + 0.5) / PLACES * length,) for k in range(PLACES)]
+    return _largest(f"domain.{name}.velocity", side.velocity, places, scene.time.end, "m/s")
+
+
+def largest_force(scene: Scene) -> float:
+    """Largest acceleration (m/s²) of an own body force over the run.  InputError where it is no number somewhere."""
+    assert scene.fluid
+    law, box = scene.fluid.body_force, scene.domain
+    assert isinstance(law, OwnLaw)
+    shares = [(k + 0.5) / PLACES for k in range(PLACES)]
+    places = [(x * box.width, y * box.height) for x in shares for y in shares]
+    return _largest("fluid.body_force", law, places, scene.time.end, "m/s2")
+
+
+def _largest(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], end: float, unit: str) -> float:
+    """Largest length of what a law gives at some places (m) and times up to ``end`` (s)."""
+    timed = law.function.__code__.co_argcount > len(places[0])
+    times = [end * k / TIMES for k in range(TIMES + 1)] if timed else [0.0]
+    try:
+        compiled = compile_for(law, *places[0], *times[: 1 if timed else 0], count=2)
+    except InputError as error:
+        raise InputError([_at(key, fault) for fault in error.faults]) from None
+    largest = 0.0
+    for time in times:
+        for place in places:
+            u, v = compiled(*place, time) if timed else compiled(*place)
+            size = math.hypot(u, v)
+            if not size <= MOST:
+                where = ", ".join(f"{it:.4g} m" for it in place) + (f" and {time:.4g} s" if timed else "")
+                problem = f"is ({u:g}, {v:g}) {unit} at {where}"
+                repair = f"correct {law.name} in {law.place}"
+                raise InputError(Fault(key, law.reference, problem, "", f"<= {MOST:g} {unit}", repair))
+            largest = max(largest, size)
+    return largest
 
 
 def _at(key: str, fault: Fault) -> Fault:

@@ -20,11 +20,13 @@ from porescale.builders.checks.limits import (
     slow,
     thin,
 )
+from porescale.builders.checks.own_laws import inflow_peak, largest_force
 from porescale.builders.initial.clumps import least_density
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.fluid_options import collision_options, weight_of
 from porescale.builders.initial.frames import Placed
 from porescale.builders.initial.placed import by_hand
+from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
 from porescale.lbm.collision.choose import choose
@@ -68,7 +70,8 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
                 free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * height))
         speed = max(speed, free)
     if scene.fluid and scales:
-        push = math.hypot(*scene.fluid.body_force) / scales.density
+        force = scene.fluid.body_force
+        push = largest_force(scene) if isinstance(force, OwnLaw) else math.hypot(*force) / scales.density
         across = min(scene.domain.width, scene.domain.height)
         speed = max(speed, push * across**2 / (8 * scales.viscosity))
         speed = max(speed, _pressed_speed(scene.domain, scales))
@@ -79,6 +82,7 @@ def given_speed(scene: Scene) -> float:
     """The largest speed that the scene itself states, m/s: of sides, of the fluid at the start, of what is towed or
     controlled."""
     speeds = [side.peak for side in scene.domain.sides.values()]
+    speeds += [inflow_peak(scene, name) for name in scene.domain.sides]
     speeds += [disc.fastest for disc in scene.disc] + [it.fastest for it in scene.rectangle]
     speeds += [math.hypot(it.x.fastest, it.y.fastest) for it in scene.control]
     if scene.ring:  # what fills it turns with it up to the corners of the box

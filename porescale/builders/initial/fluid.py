@@ -9,6 +9,7 @@ from porescale.builders.derive import Derived
 from porescale.builders.initial.fluid_options import collision_options, solid_options
 from porescale.builders.initial.frames import disc_count
 from porescale.builders.initial.ring import on_the_lattice
+from porescale.common.compiled.own import OwnLaw
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.step import Coupled
 from porescale.dem.grains import Grains
@@ -25,7 +26,8 @@ def fluid_of(section: FluidSection, domain: Domain, derived: Derived) -> Fluid:
     assert derived.cells
     assert derived.scales
     unit = derived.scales.body_force
-    fx, fy = (component / unit for component in section.body_force)
+    force = (0.0, 0.0) if isinstance(section.body_force, OwnLaw) else section.body_force
+    fx, fy = (component / unit for component in force)
     fluid = Fluid(
         *derived.cells, derived.scales.relaxation_time, **collision_options(section), force=(fx, fy),
         sides=lattice_sides(domain, derived.scales, derived.cells), dtype=section.precision,
@@ -42,7 +44,7 @@ def lattice_sides(domain: Domain, scales: Scales, cells: tuple[int, int]) -> Sid
         values[name] = side.kind
         if side.speed:
             values[f"{name}_speed"] = side.speed / scales.velocity
-        if side.velocity is not None:
+        if side.velocity is not None and not isinstance(side.velocity, OwnLaw):
             count = cells[1] if name in ("left", "right") else cells[0]
             along = np.arange(count) + 0.5  # halves: the parabola is symmetric to the last bit
             shape = 6 * along * (count - along) / count**2 if side.profile == "parabola" else np.ones(count)

@@ -37,7 +37,8 @@ UNTOUCHED = Linear(1.0, 0.0)
 NO_DISCS = make_discs(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
 
 
-def _box(domain: Domain) -> Box:
+def box_of(domain: Domain) -> Box:
+    """The box of the grains: walls and periodic sides."""
     kinds = {name: "periodic" if side.boundary.periodic else "solid" for name, side in domain.sides.items()}
     return Box((0.0, 0.0), (domain.width, domain.height), **kinds)
 
@@ -51,7 +52,7 @@ def frames_of(scene: Scene, derived: Derived) -> list[Placed]:
 def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Grains, list[str]]:
     """All discs in their order: the packing's, those placed by hand, those that are held, corners of frames; and names
     of the bodies that are recorded."""
-    box, law, wall_law = _box(scene.domain), derived.law or UNTOUCHED, derived.wall_law
+    box, law, wall_law = box_of(scene.domain), derived.law or UNTOUCHED, derived.wall_law
     plates = (
         [Plate(scene.gate.x, 0.0, scene.domain.height, friction=scene.gate.friction, name=GATE)] if scene.gate else []
     )

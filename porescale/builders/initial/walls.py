@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from porescale.builders.initial.time_functions import schedule_of, schedule_or_zero
+from porescale.common.compiled.own import OwnLaw
 from porescale.dem.forces.walls import NX, NY, PX, PY
 from porescale.dem.grains import Grains
 from porescale.scene.bodies.wall import Wall
@@ -37,7 +38,7 @@ def add_walls(domain: Domain, walls: Sequence[Wall], grains: Grains) -> None:
         _press(grains, name, it, {"length": it.length} if it.stress else {})
     for name in moving_sides(domain):
         side = domain.sides[name]
-        if side.velocity is not None:
+        if side.velocity is not None and not isinstance(side.velocity, OwnLaw):
             grains.steering.move_wall(name, *side.velocity)
         width = domain.width if name in ("bottom", "top") else domain.height
         ends = ACROSS[name]

@@ -47,7 +47,7 @@ def _described(function: Callable[..., Any], seen: set[int], depth: int) -> Iter
     if not isinstance(plain, FunctionType):
         yield f"{type(function).__module__}.{type(function).__qualname__}"
         return
-    yield source_of(plain) or plain.__code__.co_code.hex() + repr(_constants(plain.__code__))
+    yield source_of(plain) or repr(_compiled(plain.__code__))
     yield from _value("defaults", [plain.__defaults__, plain.__kwdefaults__], plain, seen, depth)
     used = inspect.getclosurevars(plain)
     names = _names(plain.__code__)
@@ -62,9 +62,10 @@ def _names(code: CodeType) -> set[str]:
     return {*code.co_names, *(name for it in inner for name in _names(it))}
 
 
-def _constants(code: CodeType) -> list[Any]:
-    """Constants of a function whose source cannot be read."""
-    return [_constants(it) if isinstance(it, CodeType) else it for it in code.co_consts]
+def _compiled(code: CodeType) -> list[Any]:
+    """What tells a function from another one whose source cannot be read: instructions, names, constants."""
+    constants = [_compiled(it) if isinstance(it, CodeType) else it for it in code.co_consts]
+    return [code.co_code.hex(), code.co_names, code.co_varnames, constants]
 
 
 def _value(name: str, value: Any, of: FunctionType, seen: set[int], depth: int) -> Iterator[str]:
@@ -78,8 +79,8 @@ def _value(name: str, value: Any, of: FunctionType, seen: set[int], depth: int) 
         yield f"{name} again"
     elif isinstance(value, list | tuple | dict | set | frozenset):
         seen.add(id(value))
-        items = value.items() if isinstance(value, dict) else enumerate(value)
-        pairs = sorted(items, key=repr) if isinstance(value, set | frozenset | dict) else items
+        listed = sorted(value, key=repr) if isinstance(value, set | frozenset) else value
+        pairs = value.items() if isinstance(value, dict) else enumerate(listed)
         yield f"{name} = {type(value).__name__} of {len(value)}"
         for key, item in pairs:
             yield from _value(f"{name}[{key!r}]", item, of, seen, depth + 1)

@@ -153,6 +153,24 @@ class Run(record.Run):
         stem = stem.with_suffix("") if stem.suffix in (".mp4", ".webm") else stem
         return Film(film_of(self, self._painter, stem, rate))
 
+    def measure(self, *given: Any, out: Path | str | None = None, **sections: Any) -> dict[str, Columns]:
+        """What sections of a scene measure, at every snapshot of this run, as tables by name: {"probes": Columns, …}.
+
+        given : section objects; or a scene, or the path of a TOML file, with such sections;  sections : tables by the
+        key of their section, one or a list: ``run.measure(probe={"x": 0.1, "y": 0.02})``;  out : folder to write the
+        tables to as CSV files, none of which may be there (None: none are written).
+
+        The sections are `probe`, `flux`, `line` and `region` of porescale, `probe` and `level` of continuum-sph.  Names
+        and columns are those of a run that measures itself, and so are the numbers, but for the single precision of
+        stored fields.  What snapshots do not hold is left out with a PorescaleWarning, or refused with InputError.
+        """
+        from porescale.common.api.measure import measure, write_tables
+
+        tables = measure(self, self.program, given, sections)
+        if out is not None:
+            write_tables(tables, Path(out))
+        return tables
+
     def show(self) -> list[Path]:
         """Write pictures, film and profiles into the run folder, as the command `show` does; returns their paths."""
         return [Path(path) for path in self.program.show(self.folder)]

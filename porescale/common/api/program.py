@@ -5,7 +5,7 @@ Every part is a function, so that nothing is imported before it is needed: `--he
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from porescale.common.pictures.look import Look
     from porescale.common.record.drive import Outcome
     from porescale.common.record.open_run import Run
-    from porescale.common.schema.sections import Section
+    from porescale.common.schema.scene import SceneBase
 
 
 class Drive(Protocol):
@@ -56,17 +56,21 @@ class Program:
     warnings and all (it may raise InputError);
     show : makes pictures and a film in a run folder and gives their paths;  look : how they show a run;
     table : columns of a table of a run folder by its name, "series" for series.csv;
+    measured : sections of a scene that can be measured on a finished run, by key;  measure : measures those of a scene
+    (that of the run, with them in place of its own), the tables by name, each columns by name;
     formerly : tables like those of a scene, with what was done before keys were there whose defaults do something else.
     """
 
     name: str
     module: str
     version: str
-    scene: Callable[[], type[Section]]
+    scene: Callable[[], type[SceneBase]]
     build: Callable[[Any], Any]
     drive: Drive
     report: Callable[[Any], Report]
     show: Callable[[Path], Iterable[Path]]
     look: Callable[[Run], Look]
     table: Callable[[Path, str], Mapping[str, AnyArray]] = run_table
+    measured: Sequence[str] = ()
+    measure: Callable[[Run, Any], Mapping[str, Mapping[str, Sequence[float]]]] | None = None
     formerly: Mapping[str, Any] = field(default_factory=dict)

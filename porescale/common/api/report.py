@@ -58,7 +58,8 @@ class Report:
 
     def __repr__(self) -> str:
         rows = sum(len(group) for group in self.groups.values())
-        words = [f"{rows} values", *([f"{len(self.warnings)} warnings"] if self.warnings else [])]
+        many = len(self.warnings)
+        words = [f"{rows} values", *([f"{many} warning{'s' * (many > 1)}"] if many else [])]
         return f"Report {self.title!r}: {', '.join(words)}; show() prints it"
 
     def __str__(self) -> str:

@@ -102,7 +102,7 @@ def card_of_scene(program: Program, scene: Any) -> dict[str, Any]:
     file = source.file
     return {
         "package": program.name,
-        "name": source.name or program.module,
+        "name": source.name,
         "scene": scene_as_dict(scene),
         "scene_file": str(file.resolve()) if file else None,
         "quality": source.quality,

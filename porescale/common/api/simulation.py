@@ -109,7 +109,7 @@ class BaseSimulation(ABC):
     @property
     def name(self) -> str:
         """What the simulation is called in progress and pictures: title or name of its scene."""
-        return str(self.scene.title or self.scene.name or type(self.scene).__module__.partition(".")[0])
+        return str(self.scene.title or self.scene.name or "scene")
 
     def force(self, function: ForceFunction) -> ForceFunction:
         """Decorator: a force on every grain or particle, ``function(time, positions, velocities, out)``.

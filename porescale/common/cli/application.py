@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from cyclopts import App, CycloptsError, Parameter, Token, convert
 
-from porescale.common.cli import bench, cases, check, completion, new, run, show, study, sweep, verify
+from porescale.common.cli import bench, cases, check, completion, measure, new, run, schema, show, study, sweep, verify
 from porescale.common.cli.diagnostics import printed
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import InputError, PorescaleError
@@ -39,7 +39,7 @@ def application(package: Package) -> App:
         print_error=False,
         exit_on_error=False,
     )
-    for part in (run, check, show, new, cases, sweep, verify, bench, study):
+    for part in (run, check, show, measure, new, schema, cases, sweep, verify, bench, study):
         app.command(part.command(package))
     app.command(completion.command(app), name="--install-completion")
     return app

@@ -30,6 +30,8 @@ from porescale.common.record.model import Cloud, Snapshot
 
 WIDTH = 8.0
 """Of a figure that is made for the axes, inches."""
+NARROW = 0.8
+"""Width over height of a view below which title and time stand in two lines."""
 
 
 def size_of(look: Look) -> tuple[float, float]:
@@ -49,8 +51,12 @@ def draw(snapshot: Snapshot, look: Look, axes: Axes, *, bar: bool = True) -> Axe
     axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     axes.set_xlabel(f"x ({unit})" if unit else "x")
     axes.set_ylabel(f"y ({unit})" if unit else "y")
-    axes.set_title(look.title, loc="left")
-    axes.set_title(time_text(snapshot.time, found.longest, look.plain), loc="right")
+    time = time_text(snapshot.time, found.longest, look.plain)
+    if right - left < NARROW * (top - bottom):
+        axes.set_title(f"{look.title}\n{time}" if look.title else time, loc="left")
+    else:
+        axes.set_title(look.title, loc="left")
+        axes.set_title(time, loc="right")
     _field(snapshot, found, axes, factor)
     cloud, shapes = look.drawn(snapshot), look.shaped(snapshot)
     if cloud is not None and len(cloud.position):

@@ -60,7 +60,11 @@ def in_a_line(section: BaseModel) -> str:
 def in_lines(scene: BaseModel, name: str, quality: str | None) -> str:
     """A scene in at most three lines: name, level and title; its sections; the keys that every such scene gives."""
     title = getattr(scene, "title", "")
-    first = f"Scene {name!r}" + (f" ({quality})" if quality else "") + (f": {title}" if title else "")
+    first = (
+        (f"Scene {name!r}" if name else "Scene")
+        + (f" ({quality})" if quality else "")
+        + (f": {title}" if title else "")
+    )
     sections = []
     for field in type(scene).model_fields:
         value = getattr(scene, field)

@@ -17,6 +17,9 @@ from porescale.common.compiled.own_file import is_reference, law_of
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.quantity import Refused
 
+OWN_LAW = {"type": "string", "pattern": r"\.py:\w+$"}
+"""JSON schema of the name of an own law, "laws.py:NAME"."""
+
 
 @dataclass(frozen=True)
 class OrOwn:
@@ -26,6 +29,10 @@ class OrOwn:
     """
 
     kind: str
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: pydantic.GetJsonSchemaHandler) -> dict[str, Any]:
+        """What a file may say: what the field is without own laws, or the name of one."""
+        return {"anyOf": [handler(core), OWN_LAW]}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: pydantic.GetCoreSchemaHandler) -> CoreSchema:
         """Own laws pass; all else is what the field is without them."""
@@ -42,6 +49,12 @@ class OrOwn:
         return core_schema.with_info_wrap_validator_function(
             found, handler(_without_own(source)), serialization=core_schema.wrap_serializer_function_ser_schema(written)
         )
+
+
+def or_own(kind: str, field: Any) -> Any:
+    """A field (of `quantity`, say) that may also name an own law of a ``kind``."""
+    field.metadata.append(OrOwn(kind))
+    return field
 
 
 def _without_own(source: Any) -> Any:

@@ -13,6 +13,11 @@ from pydantic_core import CoreSchema, PydanticUndefined, core_schema
 from porescale.common.core.errors import Fault
 from porescale.common.core.units import to_si
 
+NUMBER = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?.*$"
+"""Texts that may stand for a number without unit: also 5 %."""
+WITH_UNIT = NUMBER.replace(".*$", r"(\s*[^\s\d.+-]|\s+\S).*$")
+"""Texts that may stand for a number with a unit; which units measure the same thing, a pattern cannot say."""
+
 
 class Refused(ValueError):
     """Faults that a validator found.  Keys are relative to its section; "" is the section itself.
@@ -87,6 +92,31 @@ class Quantity:
             raise Refused(self.fault(key, value, "is out of range", repair))
         return number
 
+    def text_or(self, schema: dict[str, Any]) -> dict[str, Any]:
+        """A JSON schema with, for every number in it, one of a number in the range or a text with a unit."""
+        if schema.get("type") in ("number", "integer"):
+            bounds = {"exclusiveMinimum": self.gt, "minimum": self.ge, "exclusiveMaximum": self.lt, "maximum": self.le}
+            given = {name: bound for name, bound in bounds.items() if bound is not None}
+            texts = {"type": "string", "pattern": WITH_UNIT if self.unit else NUMBER}
+            about = {name: it for name, it in schema.items() if name != "type"}
+            return {**about, "anyOf": [{"type": schema["type"], **given}, texts]}
+        made = dict(schema)
+        if isinstance(made.get("items"), dict):
+            made["items"] = self.text_or(made["items"])
+        for name in ("anyOf", "prefixItems"):
+            if name in made:
+                made[name] = [self.text_or(it) for it in made[name]]
+        return made
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: pydantic.GetJsonSchemaHandler) -> dict[str, Any]:
+        """What a file may say: numbers, or texts with a unit."""
+        return {**self.text_or(handler(core)), "description": self.about()}
+
+    def about(self) -> str:
+        """What it is, its unit and its range."""
+        allowed = self.allowed()
+        return ", ".join(filter(None, (self.help, self.unit, f"allowed: {allowed}" if allowed else "")))
+
     def __get_pydantic_core_schema__(self, source: Any, handler: pydantic.GetCoreSchemaHandler) -> CoreSchema:
         """Conversion first, then what pydantic checks for the annotated type (shape, integers, choices)."""
         words, optional = frozenset(_words(source)), _is_optional(source)
@@ -113,8 +143,9 @@ def quantity(
     Bounds are in ``unit`` and hold for every number of a tuple or list.  Without ``default`` (a number, a
     text with a unit, or None where the type allows it) the key is required.  ``help`` completes "give the …".
     """
-    info: FieldInfo = pydantic.Field(default, description=help or None)
-    info.metadata.append(Quantity(unit, gt, ge, lt, le, help))
+    mark = Quantity(unit, gt, ge, lt, le, help)
+    info: FieldInfo = pydantic.Field(default, description=help or None, json_schema_extra={"description": mark.about()})
+    info.metadata.append(mark)
     return info
 
 

@@ -35,9 +35,7 @@ class SceneBase(Section):
             return NotImplemented
         return all(getattr(self, name) == getattr(other, name) for name in type(self).model_fields)
 
-    def __hash__(self) -> int:
-        """Equal scenes have equal hashes."""
-        return hash(tuple(getattr(self, name) for name in type(self).model_fields))
+    __hash__ = Section.__hash__
 
     @property
     def source(self) -> Source:
@@ -52,6 +50,13 @@ class SceneBase(Section):
     def to_dict(self) -> dict[str, Any]:
         """The full scene with its defaults, in SI, as JSON-able tables: ``Scene(**scene.to_dict())`` equals it."""
         return scene_as_dict(self)
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """JSON Schema (2020-12) of scene files, for editors: keys, units, ranges, choices, quality levels."""
+        from porescale.common.schema.json_schema import scene_schema
+
+        return scene_schema(cls)
 
     def with_(self, changes: Mapping[str, Any], /) -> Self:
         """A copy with other values: ``scene.with_({"fluid.spacing": "0.3 mm", "probe[0].x": 0.1})``; this one stays.

@@ -65,6 +65,10 @@ class Section(BaseModel):
     """Pydantic calls an ``__init__`` without this mark for every nested section as well: each would raise for itself,
     without the faults of the others and without the folder of the file."""
 
+    def __hash__(self) -> int:
+        """Equal sections have equal hashes, those with tables among their values, too."""
+        return hash(tuple(_hashable(getattr(self, name)) for name in type(self).model_fields))
+
     def __repr__(self) -> str:
         """What is not as by default, in one line."""
         return in_a_line(self)
@@ -108,6 +112,22 @@ class Section(BaseModel):
 
         return core_schema.no_info_wrap_validator_function(collect, handler(source))
 
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: pydantic.GetJsonSchemaHandler) -> dict[str, Any]:
+        """The JSON schema of the section as files write it."""
+        made: dict[str, Any] = handler(core)
+        table = handler.resolve_ref_schema(made)
+        if "$comment" not in table:  # pydantic asks once for each validator around the section
+            changed = {**cls._schema(dict(table)), "$comment": cls.__name__}
+            table.clear()
+            table.update(changed)
+        return made
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        """The JSON ``schema`` of the fields with what validators take besides, as a word in place of a table."""
+        return schema
+
     def _faults(self) -> list[Fault]:
         """What is wrong with the section by itself, whose fields are valid; ``checks`` follow where nothing is."""
         return []
@@ -122,6 +142,13 @@ class Section(BaseModel):
             return table
         numbers = {name for name, field in cls.model_fields.items() if _is_plain_number(field)}
         return {k: str(v).lower() if isinstance(v, bool) and k in numbers else v for k, v in table.items()}
+
+
+def _hashable(value: Any) -> Any:
+    """A value with tuples for lists and sets of pairs for tables."""
+    if isinstance(value, Mapping):
+        return frozenset((key, _hashable(below)) for key, below in value.items())
+    return tuple(map(_hashable, value)) if isinstance(value, list | tuple) else value
 
 
 def _unchangeable(section: Section, name: str, value: Any) -> InputError:

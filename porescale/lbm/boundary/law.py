@@ -32,9 +32,9 @@ class Link(NamedTuple):
 class OwnLinks(Protocol):
     """Links that a kind of side settles itself at the end of each step."""
 
-    def close(self, flat: NDArray[np.floating], parity: int, force: tuple[np.floating, np.floating]) -> None:
+    def close(self, flat: NDArray[np.floating], parity: int, force: tuple[Any, Any]) -> None:
         """After the sweep of a step of that parity: overwrite the halo slots of the links (even) or their inner slots
-        (odd) in the flat populations;  force: body force density."""
+        (odd) in the flat populations;  force: body force density, two numbers or (ny, nx) each."""
 
     def state(self) -> dict[str, Any]:
         """The quantities of these links that can change between steps, for a checkpoint."""

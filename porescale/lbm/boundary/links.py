@@ -35,7 +35,7 @@ class BoundaryLinks:
         settled = {name: kind.own_links(bounds, dtype) for name, kind in kinds.items() if kind.settles}
         self.own: dict[str, OwnLinks] = {name: own for name, own in settled.items() if own is not None}
 
-    def close(self, flat: NDArray[np.floating], parity: int, force: tuple[np.floating, np.floating]) -> None:
+    def close(self, flat: NDArray[np.floating], parity: int, force: tuple[Any, Any]) -> None:
         """After the sweep of a step.  Overwrites the halo after an even step, inner slots after an odd one."""
         (empty_halo if parity else fill_halo)(flat, self.halo, self.inner, self.added)
         for own in self.own.values():

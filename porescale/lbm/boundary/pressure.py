@@ -47,6 +47,8 @@ class OpenLinks:
         self.along = np.stack([CX[self.source], CY[self.source]], 1).astype(dtype)
         self.weight = (2 * WEIGHTS[self.source]).astype(dtype)
         self.excess: NDArray[np.floating] = np.zeros(len(links), dtype)
+        self.force: NDArray[np.floating] = np.zeros((2, len(links)), dtype)
+        self._rows, self._columns = np.array([(y - 1, x - 1) for _, (x, y) in origins], np.int64).reshape(-1, 2).T
         self.density = {side: float(getattr(bounds.sides, f"{side}_density")) for side in NAMES}
         self.write()
 
@@ -64,10 +66,12 @@ class OpenLinks:
         for k, owners in enumerate(self._owners):
             self.excess[k] = sum(self.density[side] for side in owners) / len(owners) - 1
 
-    def close(self, flat: NDArray[np.floating], parity: int, force: tuple[np.floating, np.floating]) -> None:
-        """After a step of that parity, what comes in; ``force``: body force density."""
+    def close(self, flat: NDArray[np.floating], parity: int, force: tuple[Any, Any]) -> None:
+        """After a step of that parity, what comes in; ``force``: body force density, numbers or (ny, nx)."""
         slots, to = (self.odd, self.inner) if parity else (self.even, self.halo)
-        _let_in(flat, slots, to, self.source, self.along, self.weight, self.excess, *force)
+        for a, one in enumerate(force):
+            self.force[a] = one if np.ndim(one) == 0 else one[self._rows, self._columns]
+        _let_in(flat, slots, to, self.source, self.along, self.weight, self.excess, self.force)
 
     def state(self) -> dict[str, Any]:
         """Prescribed densities of the pressure sides, by side; empty without such a side."""
@@ -105,18 +109,18 @@ def _table(rows: list[list[int]]) -> Integers:
 
 
 @kernel
-def _let_in(flat, slots, to, source, along, weight, excess, fx, fy):
+def _let_in(flat, slots, to, source, along, weight, excess, force):
     """flat[to] <- f*_i + 2 w_i (rho_w - rho)(1 + 9/2 (c_i.u)² - 3/2 u²), of shifted collided populations.
 
-    u: before the collision, which added the force: half of it too much.
+    u: before the collision, which added the force (2, k): half of it too much.
     """
     for k in range(to.shape[0]):
         s = slots[k]
         f = (flat[s[0]], flat[s[1]], flat[s[2]], flat[s[3]], flat[s[4]], flat[s[5]], flat[s[6]], flat[s[7]], flat[s[8]])
         d, jx, jy = moments(f)
         c = numbers(d)
-        ux = (jx - c.half * fx) / (c.one + d)
-        uy = (jy - c.half * fy) / (c.one + d)
+        ux = (jx - c.half * force[0, k]) / (c.one + d)
+        uy = (jy - c.half * force[1, k]) / (c.one + d)
         cu = along[k, 0] * ux + along[k, 1] * uy
         size = c.one + c.c45 * cu * cu - c.c15 * (ux * ux + uy * uy)
         flat[to[k]] = flat[s[source[k]]] + weight[k] * (excess[k] - d) * size

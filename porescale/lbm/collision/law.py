@@ -72,6 +72,39 @@ class CollisionLaw(Protocol):
         """
 
 
+@law_function
+def row_law(y, law):
+    """The law in row ``y``, from 0: other than ``law`` itself where the force differs from cell to cell (field.py)."""
+
+
+@law_function
+def part_law(first, last, law):
+    """That of a row in its cells ``first`` to ``last`` - 1."""
+
+
+@law_function
+def cell_law(x, law):
+    """That of a part in its cell ``x``."""
+
+
+@row_law.of(object)
+def _same_row(y, law):
+    """The law itself."""
+    return law
+
+
+@part_law.of(object)
+def _same_part(first, last, law):
+    """The law itself."""
+    return law
+
+
+@cell_law.of(object)
+def _same_cell(x, law):
+    """The law itself."""
+    return law
+
+
 half_force = law_function(CollisionLaw.half_force)
 shear_rate = law_function(CollisionLaw.shear_rate)
 collide = law_function(CollisionLaw.collide)
@@ -189,15 +222,17 @@ def collide_row(planes, first, last, law):
     direction.  Not checked: that density stays positive.
     """
     c = numbers(law.rate)
-    hx, hy = half_force(law)
+    laws = part_law(first, last, law)
     a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut(planes, first, last)
     for x in range(a0.shape[0]):
+        here = cell_law(x, laws)
+        hx, hy = half_force(here)
         f = (a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
         d, jx, jy = moments(f)
         jx += hx
         jy += hy
         specific_volume = c.one / (c.one + d)
         m = Macroscopic(d, jx, jy, jx * specific_volume, jy * specific_volume)
-        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f, m, shear_rate(f, m, law), law)
+        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f, m, shear_rate(f, m, here), here)
         a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
         a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8

@@ -164,7 +164,7 @@ def test_a_scene_made_in_python_is_gone_on_with(kind, tmp_path, monkeypatch):
     assert not differences(tmp_path / "pieces", whole.folder)
     assert whole.card["scene"]["time"]["end"] == scene.time.end
     monkeypatch.chdir(tmp_path)
-    assert package.run(short, progress=False).folder == Path("runs") / package.__name__
+    assert package.run(short, progress=False).folder == Path("runs/scene")
 
 
 def test_threads_that_there_are_not_are_refused():

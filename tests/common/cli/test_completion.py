@@ -38,7 +38,7 @@ def test_bash_completes_a_command_that_was_begun(tmp_path):
     application.main(commands(), ["--install-completion", "--shell", "bash", "--output", str(file)])
     asked = f'source "{file}"; COMP_WORDS=(porescale s); COMP_CWORD=1; _porescale; echo "${{COMPREPLY[@]}}"'
     done = subprocess.run(["bash", "-c", asked], capture_output=True, text=True, check=True, timeout=60)
-    assert sorted(done.stdout.split()) == ["show", "study", "sweep"]
+    assert sorted(done.stdout.split()) == ["schema", "show", "study", "sweep"]
 
 
 def test_an_unknown_shell_is_asked_for(monkeypatch, capsys):

@@ -1,5 +1,6 @@
 """The package as it is built and installed: its files, its one version, and that it runs where no checkout is."""
 
+import ast
 import importlib.metadata
 import json
 import os
@@ -110,6 +111,52 @@ def test_metadata_and_citation_say_the_same():
     assert [it["name"] for it in PROJECT["project"]["authors"]] == re.findall(
         r'^  - name: "(.+)"$', cited, re.MULTILINE
     )
+
+
+def imported(folder: Path) -> set[str]:
+    """Top names of the modules that the sources in a folder import, anywhere in them, but for Python's own."""
+    found = set()
+    for path in folder.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                found |= {name.name.partition(".")[0] for name in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                found.add(node.module.partition(".")[0])
+    return found - set(sys.stdlib_module_names) - {"porescale", "continuum_sph"}
+
+
+def named(requirements: list[str]) -> set[str]:
+    """Names of packages in a list of requirements, as they are compared."""
+    return {re.split(r"[\[<>=!~ ;]", it)[0].lower().replace("_", "-") for it in requirements}
+
+
+MODULES = {
+    "cv2": "opencv-python-headless", "PIL": "pillow", "lazy_loader": "lazy-loader", "tomli_w": "tomli-w",
+    "contourpy": "matplotlib", "pydantic_core": "pydantic",
+}  # fmt: skip
+"""Packages of modules that are called otherwise, or that come with them."""
+
+
+def undeclared(modules: set[str]) -> set[str]:
+    """Modules that no dependency and no extra for users brings."""
+    extras = PROJECT["project"]["optional-dependencies"]
+    declared = named(
+        [*PROJECT["project"]["dependencies"], *(it for key in extras if key != "test" for it in extras[key])]
+    )
+    return {it for it in modules if MODULES.get(it, it) not in declared}
+
+
+def test_whatever_is_imported_is_a_dependency():
+    modules = imported(ROOT / "porescale") | imported(ROOT / "continuum_sph")
+    assert {"numpy", "numba", "llvmlite", "cv2", "psutil", "filelock"} <= modules
+    assert undeclared(modules) == set()
+    assert undeclared({*modules, "shapely"}) == {"shapely"}  # tests alone have it
+
+
+def test_whatever_is_a_dependency_is_imported():
+    modules = imported(ROOT / "porescale") | imported(ROOT / "continuum_sph")
+    used = {MODULES.get(it, it) for it in modules}
+    assert named(PROJECT["project"]["dependencies"]) - used == set()
 
 
 @pytest.fixture(scope="module")
