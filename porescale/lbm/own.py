@@ -39,28 +39,28 @@ def side_filler(law: Kernel, scales: Scales, count: int) -> Fill:
 
 
 def force_filler(law: Kernel, scales: Scales, shape: tuple[int, int], dtype: DTypeLike, *, steady: bool) -> Fill:
-    """Force densities (2, ny, nx) of an acceleration (m/s²), a function (x, y, t) in m and s, or (x, y) if steady."""
+    """Force densities (2, ny, nx) of one in N/m³, a function (x, y, t) in m and s, or (x, y) if steady."""
 
     @parallel_kernel
     def fill(time, spacing, unit, out):
         """Overwrite ``out`` (2, ny, nx) with the function at the middle of each cell."""
         for y in prange(out.shape[1]):
             for x in range(out.shape[2]):
-                ax, ay = law((x + 0.5) * spacing, (y + 0.5) * spacing, time)
-                out[0, y, x] = ax / unit
-                out[1, y, x] = ay / unit
+                fx, fy = law((x + 0.5) * spacing, (y + 0.5) * spacing, time)
+                out[0, y, x] = fx / unit
+                out[1, y, x] = fy / unit
 
     @parallel_kernel
     def fill_once(time, spacing, unit, out):
         """The same, of a function of the place alone."""
         for y in prange(out.shape[1]):
             for x in range(out.shape[2]):
-                ax, ay = law((x + 0.5) * spacing, (y + 0.5) * spacing)
-                out[0, y, x] = ax / unit
-                out[1, y, x] = ay / unit
+                fx, fy = law((x + 0.5) * spacing, (y + 0.5) * spacing)
+                out[0, y, x] = fx / unit
+                out[1, y, x] = fy / unit
 
     found: NDArray[np.floating] = np.zeros((2, *shape), dtype)
-    unit = scales.spacing / scales.step**2
+    unit = scales.body_force
 
     def filled(time: float) -> NDArray[np.floating]:
         """The force densities at ``time`` (s)."""

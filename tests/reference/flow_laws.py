@@ -17,17 +17,17 @@ WIDTH, FORCE, OMEGA = 0.01, {force}, {omega}
 
 @ps.body_force
 def kolmogorov(x, y):
-    return FORCE * math.sin(2.0 * math.pi * y / WIDTH), 0.0
+    return 1000.0 * FORCE * math.sin(2.0 * math.pi * y / WIDTH), 0.0
 
 
 @ps.body_force
 def uniform(x, y, t):
-    return FORCE, 0.25 * FORCE
+    return 1000.0 * FORCE, 250.0 * FORCE
 
 
 @ps.body_force
 def swinging(x, y, t):
-    return FORCE * math.cos(OMEGA * t), 0.0
+    return 1000.0 * FORCE * math.cos(OMEGA * t), 0.0
 
 
 @ps.inflow

@@ -13,8 +13,8 @@ from porescale.scene.scene import Scene
 
 PLACES, TIMES = 16, 200
 """Places along each direction, and times, at which laws of place and time are looked at before a run."""
-MOST = 1e6
-"""Largest speed (m/s) and acceleration (m/s²) that a law may give: what lies beyond is a slip."""
+MOST = {"m/s": 1e6, "N/m^3": 1e9}
+"""Largest speed and force density that a law may give: what lies beyond is a slip."""
 
 
 def check_own_contact(contact: Contact, laws: Sequence[ContactLaw], mass: float, radius: float) -> None:
@@ -48,13 +48,13 @@ def inflow_peak(scene: Scene, name: str) -> float:
 
 
 def largest_force(scene: Scene) -> float:
-    """Largest acceleration (m/s²) of an own body force over the run.  InputError where it is no number somewhere."""
+    """Largest force density (N/m³) of an own body force over the run.  InputError where it is no number somewhere."""
     assert scene.fluid
     law, box = scene.fluid.body_force, scene.domain
     assert isinstance(law, OwnLaw)
     shares = [(k + 0.5) / PLACES for k in range(PLACES)]
     places = [(x * box.width, y * box.height) for x in shares for y in shares]
-    return _largest("fluid.body_force", law, places, scene.time.end, "m/s2")
+    return _largest("fluid.body_force", law, places, scene.time.end, "N/m^3")
 
 
 def _largest(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], end: float, unit: str) -> float:
@@ -70,11 +70,11 @@ def _largest(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], end: fl
         for place in places:
             u, v = compiled(*place, time) if timed else compiled(*place)
             size = math.hypot(u, v)
-            if not size <= MOST:
+            if not size <= MOST[unit]:
                 where = ", ".join(f"{it:.4g} m" for it in place) + (f" and {time:.4g} s" if timed else "")
                 problem = f"is ({u:g}, {v:g}) {unit} at {where}"
                 repair = f"correct {law.name} in {law.place}"
-                raise InputError(Fault(key, law.reference, problem, "", f"<= {MOST:g} {unit}", repair))
+                raise InputError(Fault(key, law.reference, problem, "", f"<= {MOST[unit]:g} {unit}", repair))
             largest = max(largest, size)
     return largest
 

@@ -71,7 +71,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
         speed = max(speed, free)
     if scene.fluid and scales:
         force = scene.fluid.body_force
-        push = largest_force(scene) if isinstance(force, OwnLaw) else math.hypot(*force) / scales.density
+        push = (largest_force(scene) if isinstance(force, OwnLaw) else math.hypot(*force)) / scales.density
         across = min(scene.domain.width, scene.domain.height)
         speed = max(speed, push * across**2 / (8 * scales.viscosity))
         speed = max(speed, _pressed_speed(scene.domain, scales))

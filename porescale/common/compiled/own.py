@@ -100,7 +100,7 @@ def contact_law(*, keys: Mapping[str, str] | None = None) -> Callable[[FunctionT
 
 
 def body_force(function: FunctionType) -> OwnLaw:
-    """Make a function (x, y, t) a body force: the acceleration (ax, ay), m/s2, at a place (m) and time (s).
+    """Make a function (x, y, t) a body force: the force (fx, fy) on a volume, N/m3, at a place (m) and time (s).
 
     ``[fluid] body_force = "laws.py:NAME"`` lets it act on the fluid.  A function (x, y) is worked out once.
     """
