@@ -78,6 +78,7 @@ NO_SUBJECT = {
     "collapsing_water_column/trade.toml": "of a study, not a scene",
     "column_collapse/trade.toml": "of a study, not a scene",
     "micro_to_macro/material.toml": "read by ground.toml",
+    "own_law/laws.py": "named by the scene beside it",
 }
 """Files of cases that have no fingerprint of their own."""
 

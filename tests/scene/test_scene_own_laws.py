@@ -1,6 +1,7 @@
 """Own laws in scenes from Python: what cannot be saved, and sides that take none."""
 
 import linecache
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -61,3 +62,12 @@ def test_an_inflow_is_no_velocity_of_a_wall() -> None:
     assert said.startswith("domain.left.velocity = ")
     assert "an inflow is of the fluid, this is a wall; give two numbers" in said
     assert made([1e-3, 0.0]).domain.left.velocity == (1e-3, 0.0)  # two numbers move it
+
+
+def test_a_scene_goes_to_another_process_with_a_law_of_a_file_alone(tmp_path: Path) -> None:
+    scene = flow_scene(tmp_path, fluid__body_force="laws.py:kolmogorov")
+    again = pickle.loads(pickle.dumps(scene))
+    assert again == scene
+    assert again != flow_scene(tmp_path, fluid__body_force="laws.py:uniform")
+    with pytest.raises(pickle.PicklingError, match="notebook:swirl stands in no file"):
+        pickle.dumps(flow_scene(tmp_path, fluid__body_force=cell()))

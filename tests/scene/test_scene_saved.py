@@ -3,6 +3,7 @@
 import pickle
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -19,8 +20,20 @@ def package(file: Path) -> ModuleType:
     return continuum_sph if "[tank]" in file.read_text(encoding="utf-8") else porescale
 
 
+def plain(scene: Any) -> dict[str, Any]:
+    """The keys of a scene but for names of files, which are as seen from its folder: origin of the soil, own law."""
+    found: dict[str, Any] = scene.to_dict() | {"soil": None}
+    contact = found.get("contact")
+    if contact and ".py:" in contact["law"]:
+        found["contact"] = contact | {"law": contact["law"].rpartition("/")[2]}
+    return found
+
+
 @pytest.mark.parametrize("file", FILES, ids=lambda file: f"{file.parent.name}/{file.stem}")
-def test_every_scene_is_the_same_when_saved_at_each_level(file: Path, tmp_path: Path) -> None:
+def test_every_scene_is_the_same_when_saved_at_each_level(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(file.parent)  # files that a scene of Python names are looked for there
     ps = package(file)
     if file.parent.name == "column_collapse_table1":  # which contradicts itself on purpose
         with pytest.raises(ps.InputError, match="imply"):
@@ -31,7 +44,7 @@ def test_every_scene_is_the_same_when_saved_at_each_level(file: Path, tmp_path: 
         scene = ps.load(file, quality=level)
         saved = ps.load(scene.save(tmp_path / f"{level}.toml"))
         assert saved == scene
-        assert saved.to_dict() | {"soil": None} == scene.to_dict() | {"soil": None}  # whose origin names the file
+        assert plain(saved) == plain(scene)
         assert hash(saved) == hash(scene)
         assert pickle.loads(pickle.dumps(scene)) == scene
         assert ps.Scene(**scene.to_dict()) == scene

@@ -3,9 +3,12 @@
 Such a file is code: what a scene names is run.
 """
 
+import copyreg
+import pickle
 import re
 import sys
 import traceback
+from collections.abc import Callable
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 from types import ModuleType
@@ -107,3 +110,18 @@ def _said(error: BaseException, path: Path) -> str:
     own = [it for it in steps if Path(it.filename).resolve().is_relative_to(path.parent)]
     where = place(own[-1].filename, own[-1].lineno) if own else path.name
     return f"{where}: {type(error).__name__}: {error}"
+
+
+def _again(file: Path, name: str, kind: str, reference: str) -> OwnLaw:
+    """The law of a file as another process finds it."""
+    return law_of(f"{file}:{name}", None, kind).named(reference)
+
+
+def _reduced(law: OwnLaw) -> tuple[Callable[..., OwnLaw], tuple[Path, str, str, str]]:
+    """How a law is pickled: by its file and its name there."""
+    if law.file is None:
+        raise pickle.PicklingError(f"{law.reference} stands in no file")
+    return _again, (law.file.resolve(), law.name, law.kind, law.reference)
+
+
+copyreg.pickle(OwnLaw, _reduced)
