@@ -25,6 +25,7 @@ SCENES: dict[str, tuple[str, int, str | None, tuple[str, ...]]] = {
     "hydrostatic_column/scene.toml": (CONTINUUM, 200, "draft", ()),
     "lid_driven_cavity/scene.toml": (GRAINS, 400, "draft", ()),
     "lifting_gate/scene.toml": (GRAINS, 200, "draft", ()),
+    "own_law/scene.toml": (GRAINS, 2000, None, ()),
     "permeameter/scene.toml": (GRAINS, 80, "draft", ()),
     "piston/scene.toml": (GRAINS, 200, "draft", ()),
     "rising_bubble/scene.toml": (CONTINUUM, 100, "draft", ()),

@@ -105,8 +105,8 @@ def test_every_expectation_is_complete_and_reasoned(case):
 
 @pytest.mark.parametrize(
     "case",
-    ["column_collapse", "column_collapse_table1", "column_collapse_tank", "settling_disc", "tipping_tray",
-     *sorted([*FLOWS, *MOVED])],
+    ["column_collapse", "column_collapse_table1", "column_collapse_tank", "own_law", "settling_disc",
+     "tipping_tray", *sorted([*FLOWS, *MOVED])],
 )  # fmt: skip
 def test_every_case_says_what_it_is_and_how_to_run_it_and_shows_it(case):
     text = (CASES / case / "README.md").read_text(encoding="utf-8")
@@ -160,6 +160,17 @@ def test_a_disc_in_thicker_fluid_misses_it(porescale, tmp_path):
     assert porescale("run", CASES / "settling_disc", "--out", out, "--quiet", *words) == 0
     names = [it.partition(":")[0] for it in missed(open_run(out).series, expected("settling_disc"))]
     assert names == ["terminal speed", "largest speed"]
+
+
+@pytest.mark.parametrize(
+    ("adhesion", "off"),
+    [(0.4, set()), (0.5, {"load on the ceiling", "load on the floor", "highest grain", "deepest contact"})],
+)
+def test_discs_hang_by_a_law_of_ones_own_while_they_weigh_less_than_it_pulls(porescale, tmp_path, adhesion, off):
+    # The second row is the twin that must fail: one disc more hangs.
+    settings = (f"contact.adhesion={adhesion}", "output.snapshot_interval=0.5")
+    run(porescale, "own_law", tmp_path / "out", *settings)
+    assert missed_by(tmp_path / "out", "own_law") == off
 
 
 def missed_by(folder: Path, case: str, at: float | None = None) -> set[str]:
@@ -227,7 +238,7 @@ def test_a_bed_lets_through_in_a_run_what_its_permeability_says(porescale, tmp_p
 
 def test_no_case_is_left_out():
     assert scenes_of(PORESCALE) == sorted(
-        ["column_collapse", "column_collapse_tank", "settling_disc", "tipping_tray", *FLOWS, *MOVED]
+        ["column_collapse", "column_collapse_tank", "own_law", "settling_disc", "tipping_tray", *FLOWS, *MOVED]
     )  # each has a test of its own here
     assert sorted([*scenes_of(PORESCALE), *scenes_of(CONTINUUM)]) == [path.parent.name for path in FILES]
 
