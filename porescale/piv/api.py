@@ -64,14 +64,13 @@ def measure(
     Two pictures, or all averaged, give a `Field`; a film of more gives a list of them, in time.  Pairs in a film that
     show nothing give a PorescaleWarning and no valid vector.  Raises InputError for what cannot be read or measured.
     """
-    from porescale.common.api.folders import require_writable
     from porescale.piv.estimate.measure import Settings
     from porescale.piv.estimate.series import Shots
     from porescale.piv.pipeline import Measurement, write_fields
 
     try:
-        if out is not None:
-            require_writable(Path(out), "out")
+        if out is not None and Path(out).is_file():
+            raise InputError(Fault("out", str(out), "is a file", repair="name a folder"))
         if no_slip and mask is None and not polygon:
             raise InputError(Fault("no_slip", None, "there are no solids", repair="give mask or polygon"))
         if background not in ("none", "mean", "least"):
