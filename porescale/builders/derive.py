@@ -11,7 +11,7 @@ import numpy as np
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
 from porescale.builders.checks.numbers import check_controls
-from porescale.builders.checks.own_laws import check_own_contact
+from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
 from porescale.builders.checks.packing import check_compressed
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.builders.checks.regime import check_regime, expected_speed
@@ -81,6 +81,7 @@ def derive(scene: Scene) -> Derived:
         mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
         law, wall_law, every = plan.law_and_others(packing.material if packing else "", mean_mass)
         check_own_contact(scene.contact, every, *smallest)
+        warnings += filter(None, [energy_of_mass(scene, every, *smallest)])
         if scene.clump:
             smallest = min(smallest[0], lightest(scene.clump, plan, every)), smallest[1]
         if scene.rock and not faults:

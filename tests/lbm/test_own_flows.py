@@ -9,6 +9,7 @@ import pytest
 
 from porescale.builders.build import build
 from porescale.builders.derive import derive
+from porescale.common.compiled.jit import set_threads, threads
 from porescale.common.core.errors import InputError
 from tests.reference.flow_laws import flow_scene
 
@@ -35,6 +36,14 @@ def test_kolmogorov_flow_has_its_amplitude_and_the_order_is_two(tmp_path: Path) 
     assert abs(fine - 0.05) > (WAVE * WIDTH / 16) ** 2 / 4 or abs(fine) < 0.05  # 5 % would be seen
 
 
+HEAP = [
+    {
+        "x": 0.002 + 0.00201 * (k % 4), "y": 0.00101 + 0.00201 * (k // 4), "diameter": 0.002,
+        "velocity": [0.01 * (1 - k % 3), -0.02],
+    }
+    for k in range(8)
+]  # fmt: skip
+"""Discs 10 micrometres apart, and from the floor, that come together within 1 ms."""
 CHANNEL = {"domain__bottom": "wall", "domain__top": "wall"}
 
 
@@ -150,3 +159,30 @@ def test_speeds_and_numbers_that_are_none_are_refused_before_a_run(tmp_path: Pat
         derive(flow_scene(tmp_path, domain__left=left, **OPEN))
     with pytest.raises(InputError, match="made for @inflow, here @body_force is needed"):
         flow_scene(tmp_path, fluid__body_force="laws.py:pulse")
+
+
+def test_one_and_two_threads_give_the_same_bits_with_a_contact_law_and_a_force(tmp_path: Path) -> None:
+    # Discs that stick to each other and to the floor, in fluid that a force of every cell stirs.
+    def final(count: int, adhesion: float = 0.02) -> list[Any]:
+        scene = flow_scene(
+            tmp_path, 32, fluid__body_force="laws.py:whirl", force=0.05, **CHANNEL,
+            contact={"law": "laws.py:sticky", "release": "overlap", "stiffness": 1e4, "adhesion": adhesion},
+            grains={"density": 2500, "hydraulic_radius_ratio": 0.8, "grain": HEAP},
+        )  # fmt: skip
+        set_threads(count)
+        simulation = build(scene)
+        simulation.advance(60)
+        assert simulation.fluid
+        assert simulation.grains
+        discs = simulation.grains.discs
+        inside = simulation.fluid.populations[:, 1:-1, 1:-1]
+        return [it.copy() for it in (inside, discs.position, discs.velocity, discs.spin)]
+
+    before = threads()
+    try:
+        one, two, stickier = final(1), final(2), final(2, 0.02001)
+    finally:
+        set_threads(before)
+    for a, b in zip(one, two, strict=True):
+        np.testing.assert_array_equal(a, b)
+    assert not any(np.array_equal(a, b) for a, b in zip(one[:3], stickier[:3], strict=True))  # the law is asked

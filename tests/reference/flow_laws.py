@@ -30,6 +30,16 @@ def swinging(x, y, t):
     return 1000.0 * FORCE * math.cos(OMEGA * t), 0.0
 
 
+@ps.body_force
+def whirl(x, y, t):
+    return FORCE * (WIDTH / 2 - y) * math.cos(OMEGA * t), FORCE * (x - WIDTH / 2)
+
+
+@ps.contact_law(keys={{"stiffness": "N/m", "adhesion": "N/m"}})
+def sticky(overlap, closing, radius, mass, p):
+    return p.stiffness * overlap - p.adhesion
+
+
 @ps.inflow
 def parabola(s, t):
     return 6.0 * FORCE * s * (WIDTH - s) / WIDTH**2, 0.0

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from porescale.validation.lbm import cavity, operators
+from porescale.validation.lbm import cavity, operators, own_forces
 from porescale.validation.lbm import channels as lab
 from porescale.validation.lbm import open_sides as opened
 from porescale.validation.lbm.channels import HEIGHT, OTHER_MAGIC, VISCOSITIES
@@ -114,3 +114,28 @@ def test_an_operator_of_first_order_would_be_told_apart():
     # At a fixed Mach number the Galilean defect does not converge, whatever the operator.
     errors = [lab.taylor_green(n, speed=0.1 * n, drift=0.05 * n, operator="mrt") for n in (16, 32, 64)]
     assert abs(lab.order(errors) - 2) > 5 * tolerance("lbm.taylor_green_order_of_each_operator")
+
+
+def test_a_thousandth_more_force_of_every_cell_is_told_apart():
+    # The error is 1.6e-3, of one sign, and the tolerance little more.
+    bound = tolerance("lbm.kolmogorov_flow")
+    assert abs((1 + own_forces.kolmogorov(32)) * 0.999 - 1) > bound
+
+
+def test_the_error_of_a_wave_under_a_force_is_that_of_its_magic_parameter():
+    # 2/3 (magic - 1/4) (k h)²: none of second order at 1/4, where the order is four.
+    k = 2 * np.pi / 32
+    for magic in (1 / 12, 1 / 8, 3 / 16):
+        assert own_forces.kolmogorov(32, magic) == pytest.approx(2 / 3 * (magic - 1 / 4) * k**2, rel=0.2 * k**2)
+    errors = [own_forces.kolmogorov(cells, 1 / 4) for cells in own_forces.STEADY]
+    assert abs(lab.order(errors) - 2) > 10 * tolerance("lbm.kolmogorov_flow_order")
+
+
+def test_a_channel_that_swings_a_thousandth_of_a_radian_late_is_told_apart():
+    assert own_forces.swinging(64, late=0.001) > 1.2 * tolerance("lbm.womersley_channel")
+
+
+def test_a_flow_that_is_late_at_every_resolution_has_no_order():
+    # Late by a share of the period: an error that no finer lattice makes smaller.
+    errors = [own_forces.swinging(cells, late=0.01) for cells in own_forces.SWINGING]
+    assert abs(lab.order(errors) - 2) > 5 * tolerance("lbm.womersley_channel_order")

@@ -36,6 +36,18 @@ def check_own_contact(contact: Contact, laws: Sequence[ContactLaw], mass: float,
             raise InputError(Fault("contact.law", contact.law.reference, problem, repair=repair))
 
 
+def energy_of_mass(scene: Scene, laws: Sequence[ContactLaw], mass: float, radius: float) -> str | None:
+    """A warning where the energy budget is asked for of a user's law whose force at rest depends on the mass."""
+    if not (scene.output.energy and scene.contact and isinstance(scene.contact.law, OwnLaw)):
+        return None
+    if not any(isinstance(law, OwnContact) and law.elastic_force_depends_on_mass(mass, radius) for law in laws):
+        return None
+    return (
+        f"output.energy: the force of {scene.contact.law.reference} at rest depends on the mass, so contacts have no"
+        " energy of the overlap alone: that of springs is reckoned with 1 kg/m, and the residual holds the difference"
+    )
+
+
 def inflow_peak(scene: Scene, name: str) -> float:
     """Largest speed (m/s) of the own law of a side over the run; 0 where it has none.  InputError where it is no number
     somewhere."""

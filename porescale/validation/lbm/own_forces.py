@@ -66,3 +66,51 @@ def swinging(cells: int, *, late: float = 0.0) -> float:
     y = np.arange(cells) + 0.5
     exact = womersley(y, cells, omega, force, steps - late / omega)
     return float(np.abs(fluid.fields()[1][:, 1] - exact).max() / np.abs(exact).max())
+
+
+BOUND = (2 * math.pi / STEADY[-1]) ** 2 / 24
+NARROW = (2 * WOMERSLEY / SWINGING[-1]) ** 2 / 24
+
+
+@VALIDATIONS.row(
+    "lbm.kolmogorov_flow",
+    source="exact: amplitude a/(nu k²) under a force a sin(k y) of every cell, 32 cells a wave",
+    because="second order: 2/3 (1/4 - magic) (k h)² with magic 3/16, (k h)²/24; the next term takes away from it",
+    tolerance=BOUND,
+)
+def kolmogorov_row() -> Measured:
+    """Amplitude over the exact one."""
+    return Measured.absolute(1.0, 1 + kolmogorov(STEADY[-1]))
+
+
+@VALIDATIONS.row(
+    "lbm.kolmogorov_flow_order",
+    source="as for the amplitude, 8, 16 and 32 cells a wave",
+    because="the next term of the error is fourth order: 0.1 (k h)² of it, 0.06 at 8 cells, so 0.1 in the order",
+    tolerance=0.1,
+)
+def kolmogorov_order() -> Measured:
+    """Order of convergence of the amplitude."""
+    return Measured.absolute(2.0, order([abs(kolmogorov(cells)) for cells in STEADY]))
+
+
+@VALIDATIONS.row(
+    "lbm.womersley_channel",
+    source="Womersley 1955, plane: a channel under a force of every cell a cos(omega t), Womersley number 4.5",
+    because="second order: (h/d)²/24 as for a wave under a force, d = sqrt(nu/omega), 64 cells",
+    tolerance=NARROW,
+)
+def womersley_row() -> Measured:
+    """Largest error of the profile over the largest speed, after sixteen periods."""
+    return Measured.absolute(0.0, swinging(SWINGING[-1]))
+
+
+@VALIDATIONS.row(
+    "lbm.womersley_channel_order",
+    source="as for the profile, 16, 32 and 64 cells",
+    because="the next term is fourth order: (h/d)²/3 of it at 16 cells, 0.1, so 0.1 in the order over two doublings",
+    tolerance=0.1,
+)
+def womersley_order() -> Measured:
+    """Order of convergence of the profile."""
+    return Measured.absolute(2.0, order([swinging(cells) for cells in SWINGING]))

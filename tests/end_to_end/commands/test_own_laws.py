@@ -5,9 +5,13 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+import h5py
+import numpy as np
 import pytest
 
+from porescale import open_run
 from tests.reference.folders import ROOT
 from tests.reference.own_laws import write_laws
 from tests.reference.waiting import done
@@ -50,6 +54,19 @@ def folder(tmp_path: Path) -> Path:
     write_laws(tmp_path / "own", LAW.format(force=FORCE))
     (tmp_path / "own" / "scene.toml").write_text(SCENE, encoding="utf-8")
     return tmp_path / "own"
+
+
+def states(run: Path) -> dict[str, bytes]:
+    """Every array of the last checkpoint of a run (positions, velocities, springs), by its name."""
+    found: dict[str, bytes] = {}
+
+    def keep(name: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset) and name != "tree":  # which also tells the steps of either part
+            found[name] = np.asarray(item[()]).tobytes()
+
+    with h5py.File(run / "checkpoint.h5") as file:
+        file.visititems(keep)
+    return found
 
 
 def porescale(*words: object) -> subprocess.CompletedProcess[str]:
@@ -101,3 +118,38 @@ def test_check_says_what_follows_from_it(folder: Path) -> None:
     assert found.returncode == 0, found.stderr
     for word in ("laws.py:sticky", "contact.adhesion", "stiffest tangent", "contact time"):
         assert word in found.stdout
+
+
+@pytest.mark.parametrize(
+    ("force", "energy", "said"),
+    [
+        ("p.stiffness * overlap * mass / (mass + 1e-3)", True, True),
+        ("p.stiffness * overlap * mass / (mass + 1e-3)", False, False),
+        ("p.stiffness * overlap + 0.1 * mass * closing", True, False),  # of the mass, but not at rest
+    ],
+)
+def test_check_warns_of_an_energy_that_is_not_of_the_overlap_alone(
+    folder: Path, force: str, energy: bool, said: bool
+) -> None:
+    write_laws(folder, LAW.format(force=force))
+    found = porescale("check", folder, "--set", f"output.energy={str(energy).lower()}")
+    assert found.returncode == 0, found.stderr
+    words = " ".join((found.stdout + found.stderr).split())
+    assert ("laws.py:sticky at rest depends on the mass" in words) == said
+
+
+def test_a_run_that_was_interrupted_goes_on_to_the_bit(folder: Path) -> None:
+    # In the middle of the contact, from 6.4 to 9.2 ms.  The other one has a law that pulls a millionth more.
+    few = ("--quiet", "--set", "output.series_interval=1e-3", "--set", "output.snapshot_interval=2e-3")
+    runs = {"whole": ("time.end=0.012",), "halved": ("time.end=0.008", "time.end=0.012")}
+    for name, parts in {**runs, "other": ("contact.adhesion=0.2000002",)}.items():
+        for k, setting in enumerate(parts):
+            words = ["--resume"] * (k > 0) + (["--set", "time.end=0.012"] if name == "other" else [])
+            ended = porescale("run", folder, "--out", folder / name, *few, "--set", setting, *words)
+            assert ended.returncode == 0, ended.stdout + ended.stderr
+    whole, halved, other = (open_run(folder / name).series.to_pandas() for name in ("whole", "halved", "other"))
+    assert whole["largest overlap over diameter ()"][0.007:0.009].min() > 0.0
+    assert whole.equals(halved)
+    assert not whole.equals(other)
+    assert states(folder / "whole") == states(folder / "halved")
+    assert states(folder / "whole") != states(folder / "other")
