@@ -62,7 +62,7 @@ def diff(a: Scene | Run, b: Scene | Run) -> Diff:
 
 def build(scene: Scene) -> Simulation:
     """The simulation of ``scene`` at time 0; raises InputError for what the scene must not request."""
-    made: Simulation = PROGRAM.build(scene)
+    made: Simulation = PROGRAM.build(PROGRAM.required(scene))
     return made
 
 
@@ -71,7 +71,7 @@ def check(scene: Scene) -> Report:
 
     Raises InputError with all that a scene must not request.
     """
-    return PROGRAM.report(scene)
+    return PROGRAM.report(PROGRAM.required(scene))
 
 
 def run(
@@ -101,7 +101,10 @@ def run(
 
 
 def open_run(folder: str | Path) -> Run:
-    """Open the folder of a run, finished, running or killed; InputError where it holds none, or a damaged one."""
+    """Open the folder of a run, finished, running or killed.
+
+    InputError where it holds none, one of another package, or a damaged one.
+    """
     from porescale.common.api.open_run import open_run
 
     return open_run(folder, PROGRAM)

@@ -50,7 +50,7 @@ def build(scene: Scene) -> Simulation:
 
     A packing is settled first, or read from the cache; that can take seconds.
     """
-    made: Simulation = PROGRAM.build(scene)
+    made: Simulation = PROGRAM.build(PROGRAM.required(scene))
     return made
 
 
@@ -59,7 +59,7 @@ def check(scene: Scene) -> Report:
 
     Raises InputError with all that a scene must not request.
     """
-    return PROGRAM.report(scene)
+    return PROGRAM.report(PROGRAM.required(scene))
 
 
 def run(
@@ -89,7 +89,10 @@ def run(
 
 
 def open_run(folder: str | Path) -> Run:
-    """Open the folder of a run, finished, running or killed; InputError where it holds none, or a damaged one."""
+    """Open the folder of a run, finished, running or killed.
+
+    InputError where it holds none, one of another package, or a damaged one.
+    """
     from porescale.common.api.open_run import open_run
 
     return open_run(folder, PROGRAM)

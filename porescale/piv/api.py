@@ -69,6 +69,8 @@ def measure(
     from porescale.piv.pipeline import Measurement, write_fields
 
     try:
+        if out is not None and Path(out).is_file():
+            raise InputError(Fault("out", str(out), "is a file", repair="name a folder"))
         if no_slip and mask is None and not polygon:
             raise InputError(Fault("no_slip", None, "there are no solids", repair="give mask or polygon"))
         if background not in ("none", "mean", "least"):
@@ -153,6 +155,8 @@ def _film(film: Films, second: Path_ | AnyArray | None, **chosen: Any) -> Film:
     """Files or arrays as a film."""
     from porescale.piv.images.film import Held, open_film
 
+    if second is None and (film is None or getattr(film, "ndim", 3) == 2):
+        raise InputError(Fault("film", None, "is a single picture", repair="give two, or a film"))
     many = film if second is None else [film, second]
     items: list[Any] = [many] if isinstance(many, str | Path) else list(many)
     if not all(isinstance(it, np.ndarray) for it in items):

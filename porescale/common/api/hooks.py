@@ -10,7 +10,7 @@ import numpy as np
 
 from porescale.common.api.hook_source import hash_of, source_of
 from porescale.common.core.errors import Fault, InputError, Unstable
-from porescale.common.record.schedule import Schedule, positive
+from porescale.common.record.schedule import Schedule, is_number, positive
 
 if TYPE_CHECKING:
     from porescale.common.core.types import AnyArray, Floats
@@ -103,6 +103,7 @@ class EveryHook(Hook):
     def __init__(self, function: SampleFunction, simulation: Model, interval: str, schedule: Schedule) -> None:
         super().__init__(function)
         self.simulation, self.interval, self.schedule = simulation, interval, schedule
+        self.asked = False
         self.restart()
 
     def restart(self) -> None:
@@ -122,11 +123,16 @@ class EveryHook(Hook):
                 column.pop()
             self.loose = False
         self.last_step = step
+        if self.asked:
+            raise self.fault("ran the simulation", "only measure in it")
+        self.asked = True
         try:
             given = self.function(sim)
         except Exception as error:
             self.note(error, step, sim.time)
             raise
+        finally:
+            self.asked = False
         if sim.step != step:
             raise self.fault("did steps of the simulation", "only measure in it")
         if given is None:
@@ -144,11 +150,16 @@ class EveryHook(Hook):
         """What the function gave, as numbers."""
         if not isinstance(given, Mapping):
             raise self.fault(f"returned {type(given).__name__}", "return a dict of columns, or nothing")
-        try:
-            return {str(name): float(value) for name, value in given.items() if name != TIME}
-        except (TypeError, ValueError):
-            wrong = next((it for it in given.items() if not np.isscalar(it[1])), next(iter(given.items())))
-            raise self.fault(f"column {str(wrong[0])!r} is no number", "give one number a column") from None
+        row = {}
+        for name, value in given.items():
+            if not str(name).strip() or set(str(name)) & set(',"\r\n'):
+                raise self.fault(f"{str(name)!r} is no name of a column", 'name it as "height (m)"')
+            try:
+                row[str(name)] = float(value)
+            except (TypeError, ValueError):
+                raise self.fault(f"column {str(name)!r} is no number", "give one number a column") from None
+        row.pop(TIME, None)
+        return row
 
     def on_card(self) -> dict[str, Any]:
         """What card.json holds of it."""
@@ -161,8 +172,9 @@ def when(seconds: float | None, steps: int | None, step_seconds: float | None) -
         problem = "needs an interval" if steps is None else "has two intervals"
         raise InputError(Fault("every", None, problem, repair="write @sim.every(seconds=1e-3) or @sim.every(steps=10)"))
     if steps is not None:
-        if not steps >= 1 or int(steps) != steps:
+        if not is_number(steps) or not steps >= 1 or steps % 1:
             raise InputError(Fault("every.steps", steps, "is no number of steps", allowed=">= 1, whole"))
         return f"{int(steps)} steps", Schedule(float(steps), 1.0)
     assert seconds is not None
-    return f"{float(seconds)!r} s", Schedule(positive("every.seconds", seconds, endless=True), step_seconds)
+    interval = positive("every.seconds", seconds, endless=True)
+    return f"{interval!r} s", Schedule(interval, step_seconds)

@@ -13,6 +13,7 @@ from porescale.common.core.html import html_table
 from porescale.common.record import open_run as record
 from porescale.common.record.columns import TIME, WIDE, Columns, missing
 from porescale.common.record.model import Snapshot
+from porescale.common.record.read_card import read_card
 
 if TYPE_CHECKING:
     import pyvista
@@ -52,6 +53,10 @@ class Run(record.Run):
     def __init__(self, folder: Path, card: dict[str, Any], frames: Any, program: Program) -> None:
         super().__init__(folder, card, frames)
         self.program = program
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For pickling and copies, as other processes need them: without what paints, which is made anew."""
+        return {name: value for name, value in self.__dict__.items() if name != "_painter"}
 
     @overload
     def __getitem__(self, k: int) -> RunSnapshot: ...
@@ -222,6 +227,7 @@ class Run(record.Run):
 
 def open_run(folder: Path | str, program: Program) -> Run:
     """Open a run folder of a program; InputError where it holds no run, that of another package, or a damaged one."""
+    read_card(Path(folder), program.name)
     lean = record.open_run(folder)
     return Run(lean.folder, lean.card, dict(lean._frames), program)
 

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from porescale.common.core.errors import Fault, InputError
+
 if TYPE_CHECKING:
     from porescale.common.api.report import Report
     from porescale.common.core.types import AnyArray
@@ -74,3 +76,12 @@ class Program:
     measured: Sequence[str] = ()
     measure: Callable[[Run, Any], Mapping[str, Mapping[str, Sequence[float]]]] | None = None
     formerly: Mapping[str, Any] = field(default_factory=dict)
+
+    def required(self, scene: Any) -> Any:
+        """``scene``; InputError unless it is one of this program."""
+        if isinstance(scene, self.scene()):
+            return scene
+        whose = type(scene).__module__.partition(".")[0]
+        given = type(scene).__name__ if whose == "builtins" else f"{whose}.{type(scene).__name__}"
+        repair = "give a scene; load makes one of a path or the name of a case"
+        raise InputError(Fault("scene", given, f"is no scene of {self.name}", repair=repair))

@@ -31,10 +31,7 @@ def run(
     from porescale.common.api.simulation import BaseSimulation
 
     model = given if isinstance(given, BaseSimulation) else None
-    scene: Any = given if model is None else model.scene
-    if not isinstance(scene, program.scene()):
-        problem, repair = f"is no scene of {program.name}", "give a scene, or what build makes of one"
-        raise InputError(Fault("scene", type(given).__name__, problem, repair=repair))
+    scene = program.required(given if model is None else model.scene)
     if model is not None:
         _require_start(model)
     card = card_of_scene(program, scene)

@@ -16,7 +16,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.columns import Columns
 from porescale.common.record.model import variable_step
 from porescale.common.record.record import MADE_LATER
-from porescale.common.record.schedule import CHECK_EVERY, SLACK, block
+from porescale.common.record.schedule import CHECK_EVERY, SLACK, block, is_number
 from porescale.common.record.stop import polite_stop
 
 if TYPE_CHECKING:
@@ -222,11 +222,13 @@ class BaseSimulation(ABC):
             names = [name for name, value in given.items() if value is not None]
             raise InputError(Fault(names[0], given[names[0]], f"contradicts {names[1]}", repair="give one of them"))
         if steps is not None:
-            if not steps >= 0 or steps != int(steps):
+            if not is_number(steps) or not steps >= 0 or steps % 1:
                 raise InputError(Fault("steps", steps, "is no number of steps", allowed=">= 0, whole"))
             last = self.step + int(steps)
             return (None if variable_step(self) else last * self.step_seconds), last
         key, value = ("seconds", seconds) if seconds is not None else ("until", until)
+        if value is not None and not is_number(value):
+            raise InputError(Fault(key, str(value), "is no time", repair="give it in s, as 0.001"))
         end = float(self.scene.time.end if value is None else value) + (self.time if seconds is not None else 0.0)
         if not np.isfinite(end):
             raise InputError(Fault(key, value, "is no time", "s"))

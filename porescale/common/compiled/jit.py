@@ -237,7 +237,7 @@ def set_threads(count: int | None) -> int:
     """Use ``count`` threads (None: all cores) in parallel kernels; returns it.  InputError unless there are as many."""
     limit = most_threads()
     chosen = limit if count is None else count
-    if not 1 <= chosen <= limit:
+    if not hasattr(chosen, "__index__") or not 1 <= chosen <= limit:
         raise InputError(Fault("--threads", count, "is out of range", allowed=f"1 to {limit}"))
     compiler().numba.set_num_threads(chosen)
     return chosen

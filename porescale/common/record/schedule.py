@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from numbers import Real
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.model import Model, variable_step
@@ -105,7 +106,14 @@ def too_many(what: str, interval: float, count: int, size: float) -> str:
 
 def positive(key: str, value: float, *, endless: bool = False) -> float:
     """``value`` (s) if it is a positive number, finite unless ``endless``; else InputError."""
+    if not is_number(value):
+        raise InputError(Fault(key, str(value), "is no number of seconds", repair="give it in s, as 0.001"))
     number = float(value)
     if not number > 0 or (math.isinf(number) and not endless):
         raise InputError(Fault(key, value, "must be positive" + ("" if endless else " and finite"), unit="s"))
     return number
+
+
+def is_number(value: object) -> bool:
+    """Whether ``value`` is a real number, of Python or numpy."""
+    return isinstance(value, Real) or (getattr(value, "shape", None) == () and hasattr(value, "__float__"))

@@ -65,6 +65,9 @@ class SceneBase(Section):
         the scene's file did not have it.  What follows from changed keys follows again, and files are read again.
         Raises InputError with every fault, worded as those of a file.
         """
+        if not isinstance(changes, Mapping):
+            repair = 'write it as scene.with_({"fluid.spacing": 0.001})'
+            raise InputError(Fault("with_", type(changes).__name__, "is no mapping of keys to values", repair=repair))
         table: Mapping[str, Any] = self._written
         keys: list[Key] = []
         faults: list[Fault] = []
@@ -96,6 +99,11 @@ class SceneBase(Section):
         from porescale.common.schema.save import save
 
         return save(self, self._written, self._source.folder, Path(path), overwrite)
+
+    def __dir__(self) -> list[str]:
+        """Sections, and what a scene can do; for completion, without what pydantic adds."""
+        own = {name for kind in type(self).__mro__ if issubclass(kind, SceneBase) for name in vars(kind)}
+        return sorted({*type(self).model_fields, *(name for name in own if not name.startswith(("_", "model_")))})
 
     def __repr__(self) -> str:
         """At most three lines."""

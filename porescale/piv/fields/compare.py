@@ -47,6 +47,13 @@ class Comparison:
     surface: Difference | None
     surfaces: tuple[Surface, Surface] | None
 
+    def __repr__(self) -> str:
+        return (
+            f"Comparison at {self.points} points: rms difference {self.rms:.4g}, largest {self.largest:.4g}, "
+            f"of an rms speed of {self.speed:.4g}\nbias {self.bias_u:.4g}, {self.bias_v:.4g}, "
+            f"correlation {self.correlation:.6g}; {len(self.pairs)} vortices matched"
+        )
+
     def as_dict(self) -> dict[str, Any]:
         """JSON-able: the numbers, and each vortex with its partner."""
         names = ("points", "speed", "rms", "largest", "bias_u", "bias_v", "direction", "aligned", "correlation")

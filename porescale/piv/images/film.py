@@ -117,7 +117,7 @@ def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
             files = [Path(it) for it in sorted(glob.glob(str(path)))]
         elif stacks.is_stack(path):
             return Film((path,), **chosen)
-        elif path.suffix.lower() in STILLS:
+        elif path.suffix.lower() in STILLS and path.is_file():
             raise InputError(Fault("film", str(path), "is a single picture", repair="give two, or a film"))
         else:
             return Film((path,), rate=_rate(path), **chosen)

@@ -1,0 +1,100 @@
+"""Wrong input from Python: one line in the words of the field, no error of something inside."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import continuum_sph
+import porescale
+from porescale.common.core.errors import InputError
+from tests.common.api.small import scene_of
+
+
+def test_a_scene_of_another_kind_is_named():
+    tank, dry = scene_of("tank"), scene_of("dry")
+    for package, scene, said in [
+        (porescale, tank, "continuum_sph.Scene"),
+        (continuum_sph, dry, "porescale.Scene"),
+        (porescale, "column_collapse", "str"),
+    ]:
+        for door in (package.build, package.check, package.run):
+            with pytest.raises(InputError, match=f"^scene = '{said}': is no scene of"):
+                door(scene)
+    assert continuum_sph.check(tank)
+
+
+@pytest.mark.parametrize("changes", [None, "time.end=1", ["time.end=1"]])
+def test_changes_are_a_mapping(changes):
+    with pytest.raises(InputError, match=r'write it as scene\.with_\({"fluid\.spacing": 0\.001}\)'):
+        scene_of("dry").with_(changes)
+
+
+@pytest.mark.parametrize("count", ["2", 1.5])
+def test_a_number_of_threads_is_whole(count):
+    with pytest.raises(InputError, match=r"^threads = .*out of range"):
+        porescale.set_threads(count)
+
+
+def test_times_and_steps_are_numbers():
+    sim = continuum_sph.build(scene_of("tank"))
+    for wrong in ({"until": "1 ms"}, {"seconds": [1.0]}, {"steps": "a"}, {"steps": float("inf")}):
+        with pytest.raises(InputError, match=f"^{next(iter(wrong))} = "):
+            sim.run(**wrong)
+    for wrong in ({"seconds": "1 ms"}, {"steps": "a"}, {"steps": float("inf")}):
+        with pytest.raises(InputError, match=rf"^every\.{next(iter(wrong))} = "):
+            sim.every(**wrong)
+    assert sim.run(steps=np.array(1)).step == 1
+    assert sim.run(seconds=np.float32(1e-9)).time > 0.0
+
+
+@pytest.mark.parametrize("row", [{"": 1.0}, {"a,b": 1.0}, {"a\nb": 1.0}, {"good": 1.0, 'a"b': 1.0}])
+def test_a_column_has_a_name_that_a_table_can_have(row):
+    sim = continuum_sph.build(scene_of("tank"))
+    sim.every(steps=1)(measure_of(row))
+    with pytest.raises(InputError, match="is no name of a column"):
+        sim.run(steps=1)
+
+
+def measure_of(row):
+    """A measure that gives ``row``."""
+
+    def measure(sim):
+        return row
+
+    return measure
+
+
+def test_the_column_that_is_no_number_is_named():
+    sim = continuum_sph.build(scene_of("tank"))
+    sim.every(steps=1)(measure_of({"good": 1.0, "bad": "x"}))
+    with pytest.raises(InputError, match="column 'bad' is no number"):
+        sim.run(steps=1)
+
+
+def test_a_measure_that_runs_the_simulation_is_refused():
+    sim = continuum_sph.build(scene_of("tank"))
+
+    @sim.every(steps=1)
+    def running(sim):
+        sim.run(steps=1)
+
+    with pytest.raises(InputError, match="ran the simulation"):
+        sim.run(steps=1)
+
+
+def test_a_run_is_opened_by_its_package_and_goes_to_other_processes(tmp_path):
+    run = porescale.run(scene_of("dry"), tmp_path, progress=False)
+    with pytest.raises(InputError, match="holds a run of porescale, not of continuum-sph"):
+        continuum_sph.open_run(tmp_path)
+    run.picture()
+    for copy in (pickle.loads(pickle.dumps(run)), pickle.loads(pickle.dumps(run[-1])).run):
+        assert np.array_equal(copy[-1]["grains"].position, run[-1]["grains"].position)
+
+
+def test_completion_offers_sections_and_what_a_scene_can_do():
+    scene = scene_of("dry")
+    offered = set(dir(scene))
+    assert {"time", "grains", "with_", "save", "to_dict", "source"} <= offered
+    assert not {"model_fields", "dict", "construct", "parse_obj"} & offered
+    assert all(hasattr(scene, name) for name in offered)
