@@ -68,7 +68,12 @@ def talked(process: subprocess.Popen[Any], patience: float = PATIENCE) -> tuple[
         kill(process)
         said = process.communicate()
     kill(process)
-    raise Hung(f"{process.args} hung for {patience:g} s: {''.join(map(_text, said))[-WORDS:]}")
+    raise Hung(f"{process.args} hung for {patience:g} s: {_last(''.join(map(_text, said)))}")
+
+
+def _last(said: str) -> str:
+    """The last words of a child, without the list of compiled modules that faulthandler puts below the stacks."""
+    return said.partition("\nExtension modules:")[0][-WORDS:]
 
 
 def until(process: subprocess.Popen[Any], happens: Callable[[], object], patience: float = PATIENCE) -> bool:
@@ -137,7 +142,7 @@ def given_up(number: int, said: Path | None = None) -> str:
     with suppress(ProcessLookupError, ChildProcessError):
         os.kill(number, signal.SIGKILL)
         os.waitpid(number, 0)
-    return said.read_text(errors="replace")[-WORDS:] if said is not None and said.exists() else ""
+    return _last(said.read_text(errors="replace")) if said is not None and said.exists() else ""
 
 
 def _text(said: Any) -> str:

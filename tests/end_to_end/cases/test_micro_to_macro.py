@@ -50,20 +50,20 @@ def test_both_columns_and_the_bed_are_of_the_same_grains():
 
 
 def test_an_element_is_as_strong_as_its_grains(case):
-    soil = case.soil_section(case.ground())
-    stress = case.biaxial(case.material_of(soil), soil.reference, 0.05, 500)[1][-1]
+    soil = case.ground().soil
+    stress = case.lab.biaxial(case.material_of(soil), soil.reference, 0.05, 500)[1][-1]
     strong = math.asin((stress[2] - stress[3]) / (stress[2] + stress[3]))
     angle, error = soil.origin.measured["critical_friction_angle"]
     value, tolerance = row("critical angle of an element over that of grains")
     assert strong / angle == pytest.approx(value, abs=tolerance)
-    peak = case.soil_section(case.ground(("soil.strength=peak",)))  # the twin that must fail
+    peak = case.ground(("soil.strength=peak",)).soil  # the twin that must fail
     assert peak.friction_angle - angle > 3 * error
 
 
 @pytest.mark.slow
 def test_a_column_of_soil_ends_where_the_case_says_and_one_of_another_strength_does_not(case):
     value, tolerance = row("centre of fallen soil")
-    angle = case.soil_section(case.ground()).friction_angle
+    angle = case.ground().soil.friction_angle
     assert abs(case.soil_falls(angle).centre[-1] - value) < tolerance
     assert abs(case.soil_falls(2.0 * angle).centre[-1] - value) > 3 * tolerance
 
