@@ -1,5 +1,6 @@
 # The public names of continuum_sph, in one list: imported when first used, and what type checkers and editors see.
 from .api import InputError as InputError
+from .api import Interrupted as Interrupted
 from .api import PorescaleError as PorescaleError
 from .api import PorescaleWarning as PorescaleWarning
 from .api import Unstable as Unstable
@@ -19,6 +20,7 @@ from .scene.sections import Scene as Scene
 __version__: str
 __all__ = [
     "InputError",
+    "Interrupted",
     "PorescaleError",
     "PorescaleWarning",
     "Run",

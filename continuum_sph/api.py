@@ -9,6 +9,7 @@ from continuum_sph.program import PROGRAM
 from porescale.common.api.run import set_threads as set_threads
 from porescale.common.api.shipped import cases as cases
 from porescale.common.core.errors import InputError, PorescaleError, PorescaleWarning, Unstable
+from porescale.common.record.stop import Interrupted
 
 if TYPE_CHECKING:
     import pandas
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "InputError",
+    "Interrupted",
     "PorescaleError",
     "PorescaleWarning",
     "Unstable",

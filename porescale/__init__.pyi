@@ -21,12 +21,14 @@ from .common.core.errors import PorescaleError as PorescaleError
 from .common.core.errors import PorescaleWarning as PorescaleWarning
 from .common.core.errors import Unstable as Unstable
 from .common.core.types import Floats as Floats
+from .common.record.stop import Interrupted as Interrupted
 
 __version__: str
 __all__ = [
     "GRAVITY",
     "Floats",
     "InputError",
+    "Interrupted",
     "PorescaleError",
     "PorescaleWarning",
     "Run",

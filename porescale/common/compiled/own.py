@@ -88,7 +88,9 @@ class OwnLaw:
         return self if reference == self.reference else replace(self, reference=reference)
 
 
-def contact_law(*, keys: Mapping[str, str] | None = None) -> Callable[[FunctionType], OwnLaw]:
+def contact_law(
+    function: object = None, /, *, keys: Mapping[str, str] | None = None
+) -> Callable[[FunctionType], OwnLaw]:
     """Make a function a contact law, for ``[contact] law = "laws.py:NAME"``.
 
     The function is given (overlap, closing, radius, mass, p) and returns the normal force, N/m, > 0 where it pushes the
@@ -96,7 +98,12 @@ def contact_law(*, keys: Mapping[str, str] | None = None) -> Callable[[FunctionT
     kg/m;  p : the numbers of ``keys``, as ``p.adhesion``.  keys : SI unit of each number that [contact] gives the law,
     "" for a plain number.  Friction, rolling resistance and the end of a contact are those of the linear law.
     """
-    return lambda function: _law(CONTACT_LAW, function, keys or {})
+    if function is not None:
+        name = getattr(function, "__name__", type(function).__name__)
+        raise InputError(
+            Fault(CONTACT_LAW, name, "has no keys", repair='write @contact_law(keys={"stiffness": "N/m"})')
+        )
+    return lambda made: _law(CONTACT_LAW, made, keys or {})
 
 
 def body_force(function: FunctionType) -> OwnLaw:

@@ -113,6 +113,8 @@ class Snapshot:
         for name, cloud in self.clouds.items():
             yield "clouds", name, cloud
 
+    __iter__ = None  # else Python would try numbers for names
+
     def __getitem__(self, name: str) -> Any:
         found: dict[str, Any] = {key: block for _, key, block in self.blocks()}
         for _, _, block in self.blocks():

@@ -98,3 +98,16 @@ def test_completion_offers_sections_and_what_a_scene_can_do():
     assert {"time", "grains", "with_", "save", "to_dict", "source"} <= offered
     assert not {"model_fields", "dict", "construct", "parse_obj"} & offered
     assert all(hasattr(scene, name) for name in offered)
+
+
+def test_a_contact_law_without_its_keys_says_what_to_write():
+    with pytest.raises(InputError, match=r"contact_law = 'sticky': has no keys; write @contact_law\(keys="):
+
+        @porescale.contact_law
+        def sticky(overlap, closing, radius, mass, p):
+            return overlap
+
+
+def test_an_interrupted_run_can_be_caught_by_name():
+    assert issubclass(porescale.Interrupted, porescale.PorescaleError)
+    assert continuum_sph.Interrupted is porescale.Interrupted
