@@ -91,7 +91,7 @@ def run(
 def open_run(folder: str | Path) -> Run:
     """Open the folder of a run, finished, running or killed.
 
-    InputError where it holds none, one of another package, or a damaged one.
+    One of another package is read, but not painted.  InputError where it holds none, or a damaged one.
     """
     from porescale.common.api.open_run import open_run
 

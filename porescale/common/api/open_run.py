@@ -38,8 +38,8 @@ class RunSnapshot(Snapshot):
         """The snapshot as `show` paints it, in colours that suit the whole run."""
         return self.run._painted(self)
 
-    def _repr_png_(self) -> bytes:
-        return self.picture()._repr_png_()
+    def _repr_png_(self) -> bytes | None:
+        return self.picture()._repr_png_() if self.run.own else None
 
 
 class Run(record.Run):
@@ -171,6 +171,7 @@ class Run(record.Run):
         """
         from porescale.common.api.measure import measure, write_tables
 
+        self._require_own()
         tables = measure(self, self.program, given, sections)
         if out is not None:
             write_tables(tables, Path(out))
@@ -178,13 +179,24 @@ class Run(record.Run):
 
     def show(self) -> list[Path]:
         """Write pictures, film and profiles into the run folder, as the command `show` does; returns their paths."""
+        self._require_own()
         return [Path(path) for path in self.program.show(self.folder)]
+
+    @property
+    def own(self) -> bool:
+        """Whether the run is one of the package that opened it, which paints and measures its own runs alone."""
+        return self.card.get("package") in (None, self.program.name)
+
+    def _require_own(self) -> None:
+        """InputError where another package must open the run."""
+        read_card(self.folder, self.program.name)
 
     @cached_property
     def _painter(self) -> Painter:
         """What paints snapshots in colours that suit all of them."""
         from porescale.common.pictures.picture import painter_of
 
+        self._require_own()
         return painter_of(self, self.program.look(self))
 
     def _painted(self, snapshot: Snapshot) -> Picture:
@@ -211,7 +223,7 @@ class Run(record.Run):
         return shorten(f"tables: {', '.join(self.tables) or 'none'}", WIDE, placeholder=" …")
 
     def _repr_png_(self) -> bytes | None:
-        return self.picture()._repr_png_() if len(self) else None
+        return self.picture()._repr_png_() if len(self) and self.own else None
 
     def _repr_html_(self) -> str:
         rows = [("folder", self.folder), ("snapshots", self._counted()), ("tables", ", ".join(self.tables))]
@@ -226,8 +238,10 @@ class Run(record.Run):
 
 
 def open_run(folder: Path | str, program: Program) -> Run:
-    """Open a run folder of a program; InputError where it holds no run, that of another package, or a damaged one."""
-    read_card(Path(folder), program.name)
+    """Open a run folder; InputError where it holds no run, or a damaged one.
+
+    One of another package or of `demseg` is read as well, but not painted or measured.
+    """
     lean = record.open_run(folder)
     return Run(lean.folder, lean.card, dict(lean._frames), program)
 

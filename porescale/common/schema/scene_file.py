@@ -193,6 +193,9 @@ def _assigned(below: Any, key: Key, value: Any, above: Key) -> Any:
             place = dotted((*above, part))
             raise InputError(Fault(place, None, "no such entry of a list", "", allowed, repair, "--set"))
         return [*below[:part], _assigned(below[part], rest, value, (*above, part)), *below[part + 1 :]]
+    if isinstance(part, int):
+        problem = "is not in the scene" if below == {} else "is no list"
+        raise InputError(Fault(dotted(above), None, problem, repair="give the whole list", file="--set"))
     tables = below if isinstance(below, Mapping) else {}
     name = str(part)
     return {**tables, name: _assigned(tables.get(name, {}), rest, value, (*above, name))}

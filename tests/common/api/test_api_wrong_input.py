@@ -85,8 +85,13 @@ def test_a_measure_that_runs_the_simulation_is_refused():
 
 def test_a_run_is_opened_by_its_package_and_goes_to_other_processes(tmp_path):
     run = porescale.run(scene_of("dry"), tmp_path, progress=False)
-    with pytest.raises(InputError, match="holds a run of porescale, not of continuum-sph"):
-        continuum_sph.open_run(tmp_path)
+    other = continuum_sph.open_run(tmp_path)  # is read, but not painted
+    assert np.array_equal(other[-1]["grains"].position, run[-1]["grains"].position)
+    for paint in (other.picture, other.show, other.film, lambda: other[-1].picture()):
+        with pytest.raises(InputError, match="holds a run of porescale, not of continuum-sph"):
+            paint()
+    assert other._repr_png_() is None
+    assert run._repr_png_()
     run.picture()
     for copy in (pickle.loads(pickle.dumps(run)), pickle.loads(pickle.dumps(run[-1])).run):
         assert np.array_equal(copy[-1]["grains"].position, run[-1]["grains"].position)
@@ -111,3 +116,11 @@ def test_a_contact_law_without_its_keys_says_what_to_write():
 def test_an_interrupted_run_can_be_caught_by_name():
     assert issubclass(porescale.Interrupted, porescale.PorescaleError)
     assert continuum_sph.Interrupted is porescale.Interrupted
+
+
+def test_an_entry_of_a_list_that_is_not_there_is_named():
+    scene = scene_of("tank")
+    with pytest.raises(InputError, match="probe: is not in the scene; give the whole list"):
+        scene.with_({"probe[0].x": 0.1})
+    with pytest.raises(InputError, match=r"time\.end: is no list; give the whole list"):
+        scene.with_({"time.end[0]": 1})

@@ -53,7 +53,8 @@ def slips(table: dict[str, Any]) -> Iterator[dict[str, Any]]:
     yield {name: it for name, it in table.items() if name != "time"}
     for name, section in table.items():
         if isinstance(section, dict):
-            yield {**table, name: {**section, "spacign": 1}}
+            own_law = ":" in str(section.get("law", ""))  # which may have numbers of any name, but no tables
+            yield {**table, name: {**section, "spacign": {} if own_law else 1}}
             for key, value in section.items():
                 if isinstance(value, int | float) and not isinstance(value, bool):
                     yield {**table, name: {**section, key: True}}
