@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from continuum_sph.program import PROGRAM
+from porescale.common.api.interface import Interface
 from porescale.common.api.run import set_threads as set_threads
 from porescale.common.api.shipped import cases as cases
 from porescale.common.core.errors import InputError, PorescaleError, PorescaleWarning, Unstable
 from porescale.common.record.stop import Interrupted
 
 if TYPE_CHECKING:
-    import pandas
-
     from continuum_sph.builders.simulation import Simulation
     from continuum_sph.scene.sections import Scene
-    from porescale.common.api.load_scene import Settings
-    from porescale.common.api.open_run import Run
-    from porescale.common.api.report import Report
-    from porescale.common.api.sweep import Vary
-    from porescale.common.schema.diff import Diff
 
 __all__ = [
     "InputError",
@@ -39,104 +32,6 @@ __all__ = [
     "sweep",
 ]
 
-
-def load(scene: str | Path, *, quality: str | None = None, settings: Settings = ()) -> Scene:
-    """The scene at a path, a TOML file or a folder with scene.toml; else that of a shipped case, by its name.
-
-    quality : level "draft", "standard" or "fine"; None: the file's own default;  settings : ``section.key=value``
-    each, or a mapping, ``{"numerics.spacing": "0.3 mm"}``.  Raises InputError with every fault of the file.
-    """
-    from porescale.common.api.load_scene import load_scene
-
-    made: Scene = load_scene(PROGRAM, scene, quality, settings)
-    return made
-
-
-def diff(a: Scene | Run, b: Scene | Run) -> Diff:
-    """What differs between two scenes, or those of two runs: a mapping, key -> (value in a, value in b), SI.
-
-    None where one has no such key; empty where they are equal.  Raises InputError for anything else.
-    """
-    from porescale.common.schema.diff import diff
-
-    return diff(a, b, PROGRAM.scene())
-
-
-def build(scene: Scene) -> Simulation:
-    """The simulation of ``scene`` at time 0; raises InputError for what the scene must not request."""
-    made: Simulation = PROGRAM.build(PROGRAM.required(scene))
-    return made
-
-
-def check(scene: Scene) -> Report:
-    """What `check` says of a scene: every number that follows from it, the cost, and warnings; prints as a table.
-
-    Raises InputError with all that a scene must not request.
-    """
-    return PROGRAM.report(PROGRAM.required(scene))
-
-
-def run(
-    scene: Scene | Simulation,
-    out: str | Path | None = None,
-    *,
-    resume: bool = False,
-    overwrite: bool = False,
-    threads: int | None = None,
-    progress: bool = True,
-) -> Run:
-    """Run a scene to its end, write the run folder that the command ``run`` writes, and open it.
-
-    scene : a scene, or a simulation of one at time 0, with its hooks;  out : the folder, runs/ and the scene's name if
-    not given;  resume : go on with the run there, bit for bit as if it had not stopped;  overwrite : replace it;
-    threads : of all that is computed from now on;  progress : a bar with the time left.
-
-    Warnings of `check` are given as `PorescaleWarning`.  Raises InputError for what the scene must not request, for a
-    folder that is in use, and for a run that is another's; Unstable, with the last valid state kept in the folder; and
-    Interrupted after Ctrl-C, with the state saved.
-    """
-    from porescale.common.api.run import run
-
-    return run(
-        PROGRAM, scene, out, resume=resume, overwrite=overwrite, threads=threads, progress=progress,
-    )  # fmt: skip
-
-
-def open_run(folder: str | Path) -> Run:
-    """Open the folder of a run, finished, running or killed.
-
-    One of another package is read, but not painted.  InputError where it holds none, or a damaged one.
-    """
-    from porescale.common.api.open_run import open_run
-
-    return open_run(folder, PROGRAM)
-
-
-def sweep(
-    scene: Scene | str | Path,
-    vary: Vary,
-    out: str | Path | None = None,
-    *,
-    quality: str | None = None,
-    settings: Settings = (),
-    jobs: int = 1,
-    threads: int = 1,
-    again: bool = False,
-) -> pandas.DataFrame:
-    """Run a scene with keys varied, as the command ``sweep`` does, and compare the runs; needs pandas.
-
-    scene : a scene, its path, or the name of a case;  vary : ``{"contact.friction": [0.2, 0.5]}``, every combination
-    of all values; or a mapping key -> value for each run; or a CSV or TOML file;  out : folder, runs/, the scene's name
-    and _sweep if not given;  quality, settings : as of `load`, of all runs;  jobs : runs at a time;  threads : of each;
-    again : retry what went unstable or failed.
-
-    A row for each run, in the order of ``vary``: its name, the values varied, how it ended, what it cost, and the
-    quantities of expected.toml beside the scene, else how every column of its series ends.  The run folders, sweep.csv,
-    .md and .png lie in the folder, ``table.attrs["folder"]``; a sweep that was stopped goes on when called again.  Runs
-    that do not finish give a PorescaleWarning.  Raises InputError with what is wrong with any run before one starts.
-    """
-    from porescale.common.api.sweep import sweep
-
-    return sweep(
-        PROGRAM, scene, vary, out, quality=quality, settings=settings, jobs=jobs, threads=threads, again=again,
-    )  # fmt: skip
+_OF_PACKAGE: Interface[Scene, Simulation] = Interface(PROGRAM)
+load, diff, build, check = _OF_PACKAGE.load, _OF_PACKAGE.diff, _OF_PACKAGE.build, _OF_PACKAGE.check
+run, open_run, sweep = _OF_PACKAGE.run, _OF_PACKAGE.open_run, _OF_PACKAGE.sweep
