@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from continuum_sph.builders.instruments import WaterInstruments, level_row, probe_row
+from continuum_sph.builders.parts.instruments import WaterInstruments, level_row, probe_row
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from porescale.common.core.errors import Fault, InputError

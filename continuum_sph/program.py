@@ -65,7 +65,7 @@ def show(folder: Path) -> list[Path]:
 
 def look_of(run: Run) -> Look:
     """How pictures and films show a run: the speed of water, or where fluids and soil are, or how far soil has come."""
-    from continuum_sph.builders.phreatic import NAME, line_of
+    from continuum_sph.builders.parts.phreatic import NAME, line_of
     from continuum_sph.look import look_of_scene
 
     scene = run.card["scene"]

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from continuum_sph.builders.parts.water import WaterPart
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.water import WaterPart
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.water import flows, setups
 from continuum_sph.water.energy_budget import budget

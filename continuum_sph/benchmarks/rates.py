@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from continuum_sph.builders.soil import geostatic
-from continuum_sph.builders.water import water_flow
+from continuum_sph.builders.parts.soil import geostatic
+from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.soil import Material
 from continuum_sph.validation.seepage.saturated_box import saturated_box
 from continuum_sph.validation.soil.setups import in_tank

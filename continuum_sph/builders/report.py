@@ -1,8 +1,8 @@
 """The report of `check` on a scene before it runs."""
 
-from continuum_sph.builders.seepage_report import seepage_report
-from continuum_sph.builders.soil_report import soil_report
-from continuum_sph.builders.water_report import water_report
+from continuum_sph.builders.reports.seepage_report import seepage_report
+from continuum_sph.builders.reports.soil_report import soil_report
+from continuum_sph.builders.reports.water_report import water_report
 from continuum_sph.scene.sections import Scene
 from porescale.common.api.report import Report
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from continuum_sph.builders import mixture, soil, water
 from continuum_sph.builders.assembly import Assembly
+from continuum_sph.builders.parts import mixture, soil, water
 from continuum_sph.builders.sanity import Now, advance_one
 from continuum_sph.scene.sections import Scene
 from porescale.common.api.fields import Field, scalars
@@ -90,7 +90,7 @@ class Simulation(ShownSimulation):
         return report(self.scene)
 
     def _look(self) -> Look:
-        from continuum_sph.builders.phreatic import NAME, line_of
+        from continuum_sph.builders.parts.phreatic import NAME, line_of
         from continuum_sph.look import look_of_scene
 
         table = self.tables().get(NAME)
@@ -108,7 +108,7 @@ class Simulation(ShownSimulation):
         return replace(look, colour=name, kinds={})
 
     def _add_force(self, hook: ForceHook, instead_of: Hook | None) -> None:
-        from continuum_sph.builders.user_forces import UserForces
+        from continuum_sph.builders.parts.user_forces import UserForces
 
         part = next((it for it in self.parts if isinstance(it, UserForces)), None)
         if part is None:

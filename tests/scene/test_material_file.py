@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from continuum_sph.builders.soil_report import soil_report
+from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.scene.material_file import DENSITY, VISCOSITY
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.water import WaterSection

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from continuum_sph.builders.air import AIR, specific_weights
+from continuum_sph.builders.parts.air import AIR, specific_weights
 from continuum_sph.seepage import Frame, Resistance, Seepage
 from continuum_sph.validation.seepage.setups import COLUMNS, WATER, pore_flow
 from continuum_sph.validation.soil.setups import RATIO

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from continuum_sph.builders.instruments import MeasuredWater, surface_height
+from continuum_sph.builders.parts.instruments import MeasuredWater, surface_height
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.seepage import Frame, Reservoir, Resistance, Seepage, Supply
 from continuum_sph.seepage.reservoir import BERTH, berths

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.builders.sheet_pile import NAME
+from continuum_sph.builders.parts.sheet_pile import NAME
+from continuum_sph.builders.parts.soil import SoilPart
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.soil import SoilPart
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.seepage.setups import GRAINS, WATER
 from porescale.common.core.constants import GRAVITY

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.builders.parts.soil import SoilPart
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.soil import SoilPart
 from continuum_sph.scene.sections import Scene
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ellipk
 
-from continuum_sph.builders.sheet_pile import reach, sheet_pile, steepness
+from continuum_sph.builders.parts.sheet_pile import reach, sheet_pile, steepness
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap

@@ -13,7 +13,7 @@ import functools
 import math
 from dataclasses import dataclass, replace
 
-from continuum_sph.builders.soil import geostatic
+from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.seepage import Resistance, Seepage
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.validation.seepage.setups import COLUMNS, GRAINS, WATER, water_in

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_sph.builders.instruments import surface_height
+from continuum_sph.builders.parts.instruments import surface_height
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.seepage import Reservoir, Seepage
 from continuum_sph.validation.seepage.dam import held_between, water_there

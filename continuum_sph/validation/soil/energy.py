@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.builders.soil import geostatic
+from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.builders.soil import placed
+from continuum_sph.builders.parts.soil import placed
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.core.constants import GRAVITY

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.builders.soil import geostatic
+from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.stress import GROWN
 from continuum_sph.validation.soil.setups import AREA, COLUMN, DENSITY, POISSON, STIFFNESS, TAN_PHI, in_tank, run_until

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.builders.water import water_flow
+from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.validation.water.setups import column_scene
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from continuum_sph.builders.water import water_flow
+from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.validation.water.kernels import LATTICE, SPREAD
 from continuum_sph.validation.water.setups import column_scene, kinetic_energy, run_until
 from continuum_sph.water.energy_budget import budget

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from continuum_sph.builders.inclusion import inclusion_row
-from continuum_sph.builders.water import water_flow
+from continuum_sph.builders.parts.inclusion import inclusion_row
+from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.water.drop_swing import drop_period, swing_period
 from continuum_sph.validation.water.setups import run_until

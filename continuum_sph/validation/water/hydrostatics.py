@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 
-from continuum_sph.builders.water import water_flow
+from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.validation.water.kernels import LATTICE
 from continuum_sph.validation.water.setups import column_scene, run_until
 from continuum_sph.water.eos.liquid import Tait

@@ -5,7 +5,7 @@ import csv
 import numpy as np
 import pytest
 
-from continuum_sph.builders.instruments import MeasuredWater, interpolate, level_row, probe_row, surface_height
+from continuum_sph.builders.parts.instruments import MeasuredWater, interpolate, level_row, probe_row, surface_height
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.scene.sections import Scene

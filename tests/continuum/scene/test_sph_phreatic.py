@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from continuum_sph.builders.instruments import MeasuredWater
-from continuum_sph.builders.phreatic import FIRST, line_of, phreatic_row, places, top
+from continuum_sph.builders.parts.instruments import MeasuredWater
+from continuum_sph.builders.parts.phreatic import FIRST, line_of, phreatic_row, places, top
 from porescale.common.neighbors import square_lattice
 from porescale.common.record.model import Cloud as Points
 from porescale.common.record.model import Snapshot

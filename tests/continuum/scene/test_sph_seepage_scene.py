@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from continuum_sph.builders import pore_water
-from continuum_sph.builders.mixture import DRY, WET
-from continuum_sph.builders.seepage_report import seepage_report
-from continuum_sph.builders.sheet_pile import NAME
+from continuum_sph.builders.parts import pore_water
+from continuum_sph.builders.parts.mixture import DRY, WET
+from continuum_sph.builders.parts.sheet_pile import NAME
+from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import PACKAGE
 from continuum_sph.scene.sections import Scene

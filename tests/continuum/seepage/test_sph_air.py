@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.builders.air import AIR, air_fluid, dry_pores, specific_weights, with_air
-from continuum_sph.builders.seepage_report import seepage_report
+from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
+from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.seepage.air import TrappedAir

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from continuum_sph.builders.instruments import MeasuredWater, discharge
-from continuum_sph.builders.seepage_report import seepage_report
+from continuum_sph.builders.parts.instruments import MeasuredWater, discharge
+from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from continuum_sph.builders.sheet_pile import NAME, beside, sheet_pile
+from continuum_sph.builders.parts.sheet_pile import NAME, beside, sheet_pile
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.sections import Scene

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from continuum_sph.builders.parts.soil import geostatic, soil_law
+from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.soil import geostatic, soil_law
-from continuum_sph.builders.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import Body
 from continuum_sph.soil import Material, porosity

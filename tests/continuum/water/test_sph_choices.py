@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.builders.water import water_flow
+from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.validation.water import setups as trials
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.energy_budget import budget

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from continuum_sph.benchmarks.endurance import still
+from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.water import water_flow
 from continuum_sph.validation.water.setups import column_scene
 from continuum_sph.water import parameters as laws
 from continuum_sph.water.density import HYDROSTATIC, PLAIN, diffusion_share, noise_scale

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuum_sph.builders.inclusion import inclusion_row, pieces
+from continuum_sph.builders.parts.inclusion import inclusion_row, pieces
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.program import scene_type

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.builders.inclusion import circularity
+from continuum_sph.builders.parts.inclusion import circularity
 from continuum_sph.validation.water import fluids as trials_fluids
 from continuum_sph.water.fluids import VISCOSITY
 from continuum_sph.water.state import VISCOUS, VOLUME

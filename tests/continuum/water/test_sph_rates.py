@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.builders.water import water_flow
+from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.validation.water import channels as trials
 from continuum_sph.validation.water.fluids import drop
 from continuum_sph.validation.water.setups import column_scene, open_box

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.builders.assembly import Assembly
-from continuum_sph.builders.inclusion import InclusionPart, fill_inclusion, inclusion_fluid
 from continuum_sph.builders.initial_pressure import released_pressure
-from continuum_sph.builders.instruments import WaterInstruments
+from continuum_sph.builders.parts.inclusion import InclusionPart, fill_inclusion, inclusion_fluid
+from continuum_sph.builders.parts.instruments import WaterInstruments
 from continuum_sph.builders.sanity import (
     JumpCheck,
     Now,

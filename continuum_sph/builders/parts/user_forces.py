@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from continuum_sph.builders.assembly import Particles
-from continuum_sph.builders.mixture import MixturePart
+from continuum_sph.builders.parts.mixture import MixturePart
 from continuum_sph.soil import SoilFlow
 from continuum_sph.water.step import Flow
 from porescale.common.api.hooks import ForceHook

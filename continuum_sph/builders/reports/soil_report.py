@@ -2,7 +2,7 @@
 
 import math
 
-from continuum_sph.builders.soil import material_of, soil_law, soil_particles, soil_section
+from continuum_sph.builders.parts.soil import material_of, soil_law, soil_particles, soil_section
 from continuum_sph.scene.material_file import Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.soil.parameters import RULES

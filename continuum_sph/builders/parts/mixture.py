@@ -5,17 +5,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.builders.air import AIR as GAS
-from continuum_sph.builders.air import AirPart
 from continuum_sph.builders.assembly import Assembly
-from continuum_sph.builders.instruments import MeasuredWater, discharge, level_row, probe_row
-from continuum_sph.builders.phreatic import NAME, phreatic_row
-from continuum_sph.builders.pore_water import seepage_flow
-from continuum_sph.builders.reservoirs import ReservoirPart
+from continuum_sph.builders.parts.air import AIR as GAS
+from continuum_sph.builders.parts.air import AirPart
+from continuum_sph.builders.parts.instruments import MeasuredWater, discharge, level_row, probe_row
+from continuum_sph.builders.parts.phreatic import NAME, phreatic_row
+from continuum_sph.builders.parts.pore_water import seepage_flow
+from continuum_sph.builders.parts.reservoirs import ReservoirPart
+from continuum_sph.builders.parts.sheet_pile import ExitGradientPart, sheet_pile
+from continuum_sph.builders.parts.soil import SoilPart
+from continuum_sph.builders.parts.water import REPAIR, WaterPart
 from continuum_sph.builders.sanity import Now, require_finite, require_step
-from continuum_sph.builders.sheet_pile import ExitGradientPart, sheet_pile
-from continuum_sph.builders.soil import SoilPart
-from continuum_sph.builders.water import REPAIR, WaterPart
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Seepage
 from continuum_sph.soil import SoilFlow

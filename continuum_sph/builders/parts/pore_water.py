@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from continuum_sph.builders.air import AIR, air_fluid, dry_pores, specific_weights, with_air
-from continuum_sph.builders.reservoirs import reservoir, spare
-from continuum_sph.builders.sheet_pile import sheet_pile
-from continuum_sph.builders.soil import material_of, soil_flow, soil_section
-from continuum_sph.builders.water import wall_layers, water_law, water_particles, water_state
+from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
+from continuum_sph.builders.parts.reservoirs import reservoir, spare
+from continuum_sph.builders.parts.sheet_pile import sheet_pile
+from continuum_sph.builders.parts.soil import material_of, soil_flow, soil_section
+from continuum_sph.builders.parts.water import wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
 from continuum_sph.seepage.overlap import Overlap

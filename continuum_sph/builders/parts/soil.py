@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.builders.assembly import Assembly
+from continuum_sph.builders.parts.sheet_pile import sheet_pile
 from continuum_sph.builders.sanity import (
     JumpCheck,
     Now,
@@ -16,7 +17,6 @@ from continuum_sph.builders.sanity import (
     require_step,
     require_within,
 )
-from continuum_sph.builders.sheet_pile import sheet_pile
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection

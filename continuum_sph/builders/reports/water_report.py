@@ -2,7 +2,7 @@
 
 import math
 
-from continuum_sph.builders.water import wall_layers, water_law, water_state
+from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.parameters import RULES

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from continuum_sph.builders.instruments import MeasuredWater, surface_height
+from continuum_sph.builders.parts.instruments import MeasuredWater, surface_height
 from continuum_sph.scene.instruments import LevelSection
 from porescale.common.core.types import Floats
 from porescale.common.pictures.look import Line

@@ -1,11 +1,11 @@
 """The report of `check` on a scene of soil and water before it runs."""
 
-from continuum_sph.builders.air import air_report, dry_pores
-from continuum_sph.builders.pore_water import largest_modulus, pore_law
-from continuum_sph.builders.soil import soil_law, soil_particles, soil_section
-from continuum_sph.builders.soil_report import SNAPSHOT, report_origin
-from continuum_sph.builders.water import water_state
-from continuum_sph.builders.water_report import water_report
+from continuum_sph.builders.parts.air import air_report, dry_pores
+from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law
+from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
+from continuum_sph.builders.parts.water import water_state
+from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin
+from continuum_sph.builders.reports.water_report import water_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE

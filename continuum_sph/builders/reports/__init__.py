@@ -1,0 +1,1 @@
+"""What `check` reports of each kind of scene."""
