@@ -107,7 +107,7 @@ class EveryHook(Hook):
         self.restart()
 
     def restart(self) -> None:
-        """Forget all rows."""
+        """Forget all rows of this hook, as before the first step."""
         self.columns: dict[str, list[float]] = {}
         self.last_step, self.loose = -1, False
         self.schedule.done = -1

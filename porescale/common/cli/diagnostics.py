@@ -17,6 +17,7 @@ class _Lines(logging.Handler):
     """Writes the bare text of a record to stderr, whichever that is now."""
 
     def emit(self, record: logging.LogRecord) -> None:
+        """Print the message of ``record`` as one line, without its level or logger."""
         print(record.getMessage(), file=sys.stderr, flush=True)
 
 

@@ -64,7 +64,7 @@ class Columns(Mapping[str, AnyArray]):
 
     @property
     def rows(self) -> int:
-        """Number of rows."""
+        """Number of rows: the length of the first column, 0 without columns."""
         return len(next(iter(self._columns.values()), ()))
 
     def to_pandas(self) -> pandas.DataFrame:
