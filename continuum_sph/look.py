@@ -37,7 +37,9 @@ def look_of_scene(
         corners.append(corners[0])
     margin = 0.02 * width
     more: dict[str, Any] = {"colour": "velocity"}
-    if scene["soil"] and is_dry(scene):
+    if scene["soil"] and scene["soil"].get("suction"):
+        more = {"colour": "saturation"}
+    elif scene["soil"] and is_dry(scene):
         more = {"colour": "displacement"}
     elif scene["soil"]:
         kinds = LAYERS | (AIR if scene.get("air") else {}) | (LINE if surface else {})

@@ -2,6 +2,7 @@
 
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.reports.soil_report import soil_report
+from continuum_sph.builders.reports.suction_report import suction_report
 from continuum_sph.builders.reports.water_report import water_report
 from continuum_sph.scene.sections import Scene
 from porescale.common.api.report import Report
@@ -11,4 +12,6 @@ def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
     if scene.soil is None:
         return water_report(scene)
+    if scene.soil.suction is not None:
+        return suction_report(scene)
     return soil_report(scene) if scene.dry else seepage_report(scene)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from continuum_sph.builders.assembly import Assembly
-from continuum_sph.builders.parts import mixture, soil, water
+from continuum_sph.builders.parts import mixture, soil, suction, water
 from continuum_sph.builders.sanity import Now, advance_one
 from continuum_sph.scene.sections import Scene
 from porescale.common.api.fields import Field, scalars
@@ -28,9 +28,11 @@ P = TypeVar("P", bound=Part)
 
 
 def assemble(scene: Scene) -> Assembly:
-    """Water in a tank, soil in it, or soil with water in its pores."""
+    """Water in a tank, soil in it, soil with water in its pores, or soil with suction."""
     if scene.soil is None:
         return water.assemble(scene)
+    if scene.soil.suction is not None:
+        return suction.assemble(scene)
     return soil.assemble(scene) if scene.dry else mixture.assemble(scene)
 
 
@@ -40,7 +42,8 @@ class Simulation(ShownSimulation):
     Particles, as in `positions`, are those that a snapshot shows: water or soil in the order in which they were placed;
     of water in soil first the water, then the air, then the soil.  Where reservoirs supply water their number changes.
 
-    flow : what moves: `water.step.Flow` of water, `soil.SoilFlow` of soil, `seepage.Seepage` of both;  parts : see
+    flow : what moves: `water.step.Flow` of water, `soil.SoilFlow` of soil, `seepage.Seepage` of both,
+    `unsaturated.MoistSoil` of soil with suction;  parts : see
     `porescale.common.record.part.Part`;  shown : that of them whose particles are seen.
     """
 

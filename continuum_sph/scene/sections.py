@@ -92,6 +92,7 @@ class Scene(SceneBase):
         faults = self._unresolved()
         if self.soil is not None:
             faults += self.soil.faults(tank.width, tank.height, WHOLE * spacing)
+            faults += self.soil.suction.faults(self) if self.soil.suction else []
         elif not self.water.column:
             faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
         for index, section in enumerate(self.reservoir):

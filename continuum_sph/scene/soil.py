@@ -8,6 +8,7 @@ import pydantic
 from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import Origin
+from continuum_sph.scene.suction import SuctionSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
 from porescale.common.schema.sections import Section, quantity
@@ -95,6 +96,7 @@ class SoilSection(Section):
     floor: Literal["hold", "slip"] = "hold"
     sides: Literal["hold", "slip"] = "slip"
     body: tuple[Body, ...] = pydantic.Field(min_length=1, description="pieces of ground")
+    suction: SuctionSection | None = None
     numerics: SoilNumerics = SoilNumerics()
 
     @classmethod

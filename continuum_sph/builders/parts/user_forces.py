@@ -7,6 +7,7 @@ import numpy as np
 from continuum_sph.builders.assembly import Particles
 from continuum_sph.builders.parts.mixture import MixturePart
 from continuum_sph.soil import SoilFlow
+from continuum_sph.unsaturated import MoistSoil
 from continuum_sph.water.step import Flow
 from porescale.common.api.hooks import ForceHook
 from porescale.common.core.types import Floats
@@ -57,7 +58,13 @@ class UserForces(Part):
     def _add(self, force: Floats, *, start: bool) -> None:
         """Accelerations of the water; the soil's, or the force on it, which `Seepage.accelerate` takes."""
         mass = self.shown.masses()[:, None]
-        if isinstance(self.shown, MixturePart):
+        if isinstance(self.flow, MoistSoil):
+            ground = self.flow.ground
+            if start:
+                ground.soil.acceleration += self.flow.share[:, None] * force / mass
+            else:
+                ground.soil.force += force
+        elif isinstance(self.shown, MixturePart):
             both = self.shown.flow
             rows = np.concatenate(self.shown.rows())
             wet = len(rows)

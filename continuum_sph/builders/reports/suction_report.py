@@ -1,0 +1,54 @@
+"""The report of `check` on soil with suction before it runs."""
+
+import math
+
+from continuum_sph.builders.parts.soil import material_of, soil_law, soil_section
+from continuum_sph.builders.parts.suction import retention_of, suction_section
+from continuum_sph.builders.reports.seepage_report import STIFF
+from continuum_sph.builders.reports.soil_report import soil_report
+from continuum_sph.scene.sections import Scene
+from continuum_sph.unsaturated.richards import MOST_STAGES, SAFE
+from continuum_sph.unsaturated.step import SHARE
+from porescale.common.api.report import Report
+
+HALF = 0.5
+
+
+def suction_report(scene: Scene) -> Report:
+    """The soil's report, and how its water rises, sinks and limits steps; InputError for retention the water is too
+    soft for."""
+    section, suction, law = soil_section(scene), suction_section(scene), retention_of(scene)
+    numbers, porosity = law.numbers, section.porosity
+    out = soil_report(scene)
+    modulus, h = material_of(section).column_modulus, soil_law(scene).smoothing.length
+    out.heading("suction")
+    fringe = float(law.suction(HALF))
+    out.row("capillary height", fringe, "m", "where S_e is a half, at rest over water")
+    out.row("suction there", fringe * law.weight, "Pa")
+    out.row("spacings in it", fringe / scene.numerics.spacing)
+    out.row("time to rise as high", porosity * fringe / section.permeability, "s", "about: n h/k")
+    out.row("time to sink through the soil", porosity * section.height / section.permeability, "s", "n H/k")
+    out.row("cohesion of half full pores at most", HALF * fringe * law.weight * math.tan(section.friction_angle), "Pa",
+            "S_e psi tan phi")  # fmt: skip
+    ratio = law.stiffness / (porosity * modulus)
+    out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
+    whole = section.density + numbers.residual * porosity * scene.water.density
+    step = SHARE * h / ((modulus + law.stiffness / porosity) / whole) ** 0.5
+    out.row("longest step for sound in soil that cannot drain", step, "s")
+    # the fastest wave that the lattice has: 8/spacing² of D = k K_w/(n rho g), about
+    longest = SAFE * porosity * law.weight * scene.numerics.spacing**2 / (4.0 * section.permeability * law.stiffness)
+    stages = 0.5 * (math.sqrt(1.0 + 8.0 * step / longest) - 1.0)
+    out.row("stages of flow in a step", max(1.0, stages), "", f"of full pores; more than {MOST_STAGES} are several")
+    if ratio < STIFF:
+        speed = (STIFF * porosity * modulus / scene.water.density) ** 0.5
+        out.warn(f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.2g} "
+                 f"%; raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness")  # fmt: skip
+    if fringe < 2.0 * scene.numerics.spacing:
+        out.warn(f"the capillary height is {fringe / scene.numerics.spacing:.2g} spacings: lower numerics.spacing")
+    crest = section.height
+    if any(it.highest > crest for it in scene.reservoir):
+        out.warn("a level stands over the soil: open water is at rest, so it then stands on both sides of the soil")
+    if suction.saturation is not None and suction.saturation < 0.9 and any(it.highest > 0.0 for it in scene.reservoir):
+        out.row("suction at the start", float(law.suction((suction.saturation - suction.residual)
+                / (1.0 - suction.residual))), "m")  # fmt: skip
+    return out

@@ -1,0 +1,51 @@
+"""The section of suction: soil whose pores may be partly full."""
+
+from typing import TYPE_CHECKING
+
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Section, quantity
+
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class SuctionSection(Section):
+    """Retention of van Genuchten 1980, relative permeability of Mualem 1976, Bishop's effective stress.
+
+    S = S_r + (1 - S_r) [1 + (alpha ψ)^n]^-(1 - 1/n) at a suction of ψ metres of water.  At the start pores have either
+    one ``saturation`` everywhere, or are at rest over a ``water_table``.  The water of the pores is then carried by the
+    particles of soil, and open water is at rest at the levels of the reservoirs: there are no particles of water.
+    """
+
+    alpha: float = quantity("1/m", ge=1e-3, le=1e3, help="van Genuchten's alpha: of the order of one over the fringe")
+    n: float = quantity("", ge=1.05, le=20, help="van Genuchten's n: how evenly pores are sized")
+    residual: float = quantity("", 0.0, ge=0, le=0.95, help="residual saturation S_r")
+    connectivity: float = quantity("", 0.5, ge=-2, le=5, help="l of Mualem's relative permeability")
+    saturation: float | None = quantity("", None, gt=0, le=1, help="saturation of all pores at the start")
+    water_table: float | None = quantity("m", None, ge=-1e3, le=1e5, help="height over which pores are at rest")
+
+    def faults(self, scene: "Any") -> list[Fault]:
+        """What is wrong with it in a ``scene``."""
+        key, found = "soil.suction", []
+        if (self.saturation is None) == (self.water_table is None):
+            found.append(Fault(key, None, "needs a saturation or a water_table, and not both",
+                               repair="give one of them"))  # fmt: skip
+        if self.saturation is not None and self.saturation <= self.residual:
+            found.append(Fault(f"{key}.saturation", self.saturation, "is none that drains to the residual", "",
+                               f"> {self.residual:g}"))  # fmt: skip
+        if scene.gravity == 0.0:
+            found.append(Fault("gravity", 0.0, "gives suction in metres of water no pressure", "m/s^2", "> 0"))
+        elif scene.sound_speed == 0.0:
+            found.append(Fault("water.sound_speed", None, "is needed when no reservoir has a level to take it from"))
+        for name, there in (("water.column", scene.water.column), ("probe", scene.probe), ("level", scene.level)):
+            if there:
+                found.append(Fault(name, "given", "needs particles of water, which soil with suction has not",
+                                   repair="use [[reservoir]] for open water, or take out [soil.suction]"))  # fmt: skip
+        for name, there in (("air", scene.air), ("pile", scene.pile), ("inclusion", scene.inclusion)):
+            if there is not None:
+                found.append(Fault(name, "given", "cannot be with soil.suction", repair="take out one of them"))
+        if scene.soil.saturated:
+            found.append(Fault("soil.saturated", True, "is said by soil.suction", repair="give water_table"))
+        if scene.output.energy:
+            found.append(Fault("output.energy", True, "is of particles of water", repair="leave it out"))
+        return found

@@ -1,0 +1,137 @@
+"""Retention of water in pores: suction ψ against effective saturation S_e.
+
+    S_e = [1 + (α ψ)^n]^-m,   m = 1 - 1/n,   S = S_r + (1 - S_r) S_e        (ψ > 0, in metres of water; S = 1 below)
+
+Source: van Genuchten, Soil Sci. Soc. Am. J. 44 (1980) 892, eqs 3, 21, 22.
+
+The state variable is the filling w = m_w/(ρ_w n V): water in a piece of soil over what its pores hold.  ψ(S) rises
+upright at both ends, at S = 1 and S_r; there p(w) goes on as a straight line with the stiffness K_w of the water, which
+is then also what compresses full pores:
+
+    p = -ρ_w g ψ(S = w)  for w_dry < w < w_wet,   p = p_wet + K_w (w - w_wet)  beyond,   p = p_dry + K_w (w - w_dry) below
+
+w_wet and w_dry are where dp/dw = K_w, so p and its slope are continuous, no piece of soil is stiffer than its water, and
+p(w) needs no iteration.  1 - w_wet is of the order of 1e-4.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from porescale.common.compiled.jit import inline
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
+
+LEAST = 1e-12
+"""S_e and 1 - S_e from which on the ends of the curve are looked for."""
+
+
+class RetentionNumbers(NamedTuple):
+    """1/n, 1/m, S_r;  ρ_w g/α, Pa;  w and p (Pa) of the ends of the curve;  K_w, Pa."""
+
+    inverse_n: float
+    inverse_m: float
+    residual: float
+    scale: float
+    wet: float
+    wet_pressure: float
+    dry: float
+    dry_pressure: float
+    stiffness: float
+
+
+@inline
+def pressure_and_slope(filling, law):
+    """(p above that of the air, dp/dw), Pa, at a ``filling`` w;  law: `RetentionNumbers`."""
+    if filling >= law.wet:
+        return law.wet_pressure + law.stiffness * (filling - law.wet), law.stiffness
+    if filling <= law.dry:
+        return law.dry_pressure + law.stiffness * (filling - law.dry), law.stiffness
+    effective = (filling - law.residual) / (1.0 - law.residual)
+    power = effective**-law.inverse_m
+    suction = law.scale * (power - 1.0) ** law.inverse_n
+    slope = suction * law.inverse_n * law.inverse_m * power / ((power - 1.0) * effective * (1.0 - law.residual))
+    return -suction, slope
+
+
+@inline
+def effective_saturation(filling, law):
+    """S_e at a ``filling`` w, between 0 and 1."""
+    return min(1.0, max(0.0, (filling - law.residual) / (1.0 - law.residual)))
+
+
+@dataclass(frozen=True)
+class VanGenuchten:
+    """alpha : α, 1/m;  n : > 1;  residual : S_r;  weight : ρ_w g, N/m³;  stiffness : K_w, Pa.
+
+    Raises InputError when the water is softer than the curve is anywhere.
+    """
+
+    alpha: float
+    n: float
+    residual: float
+    weight: float
+    stiffness: float
+
+    @property
+    def m(self) -> float:
+        """1 - 1/n."""
+        return 1.0 - 1.0 / self.n
+
+    def suction(self, effective: Floats | float) -> Floats:
+        """ψ, m, at an ``effective`` saturation in (0, 1]."""
+        found: Floats = (np.asarray(effective) ** (-1.0 / self.m) - 1.0) ** (1.0 / self.n) / self.alpha
+        return found
+
+    def effective(self, suction: Floats | float) -> Floats:
+        """S_e at a ``suction`` ψ, m; 1 where it is none."""
+        found: Floats = (1.0 + (self.alpha * np.maximum(suction, 0.0)) ** self.n) ** -self.m
+        return found
+
+    def slope(self, effective: float) -> float:
+        """dp/dw, Pa, of the curve at an ``effective`` saturation in (0, 1)."""
+        power = effective ** (-1.0 / self.m)
+        suction = self.weight * float(self.suction(effective))
+        return suction / (self.n * self.m) * power / ((power - 1.0) * effective * (1.0 - self.residual))
+
+    @cached_property
+    def numbers(self) -> RetentionNumbers:
+        """The numbers that kernels take."""
+        trial = np.linspace(0.0, 1.0, 2001)[1:-1]
+        slopes = np.array([self.slope(at) for at in trial])
+        middle = float(trial[slopes.argmin()])
+        if slopes.min() >= self.stiffness:
+            raise InputError(
+                Fault("water.sound_speed", self.stiffness, "makes water softer than its suction in pores", "Pa",
+                      f"K_w > {slopes.min():.3g}", "raise it, or soil.suction.alpha")
+            )  # fmt: skip
+        ends = [
+            brentq(lambda log: self.slope(_place(log, wet=wet)) - self.stiffness,
+                   np.log(LEAST), np.log(1.0 - middle if wet else middle))
+            if self.slope(_place(np.log(LEAST), wet=wet)) > self.stiffness else np.log(LEAST)
+            for wet in (True, False)
+        ]  # fmt: skip
+        wet, dry = _place(ends[0], wet=True), _place(ends[1], wet=False)
+        filled, left = (self.residual + (1.0 - self.residual) * at for at in (wet, dry))
+        return RetentionNumbers(
+            1.0 / self.n, 1.0 / self.m, self.residual, self.weight / self.alpha,
+            filled, -self.weight * float(self.suction(wet)), left, -self.weight * float(self.suction(dry)),
+            self.stiffness,
+        )  # fmt: skip
+
+    def filling(self, pressure: Floats) -> Floats:
+        """w at a ``pressure`` (Pa, above that of the air), the inverse of p(w)."""
+        law = self.numbers
+        curve = self.residual + (1.0 - self.residual) * self.effective(-pressure / self.weight)
+        found: Floats = np.where(pressure >= law.wet_pressure, law.wet + (pressure - law.wet_pressure) / law.stiffness,
+                         np.where(pressure <= law.dry_pressure,
+                                  law.dry + (pressure - law.dry_pressure) / law.stiffness, curve))  # fmt: skip
+        return found
+
+
+def _place(logarithm: float, *, wet: bool) -> float:
+    """S_e whose distance from its wet end, or from its dry end, has this ``logarithm``."""
+    return float(1.0 - np.exp(logarithm)) if wet else float(np.exp(logarithm))

@@ -1,0 +1,250 @@
+"""Richards' equation on soil particles: water of a piece of soil, and what flows between pieces.
+
+    ∂(ρ_w n w)/∂t = ρ_w ∇·(K ∇H),   H = p/(ρ_w g) + y,   K = k k_r
+
+with w, p of `retention`, k_r of `conductivity`.  Water m_w of a particle is conserved; its pores are V less the volume of
+its grains, so soil that is compressed raises p, and full pores have the stiffness K_w/n.  Between particles
+
+    dm_i/dt = c ρ_w V_i Σ_j V_j (K_i + K_j) (H_i - H_j) (1/r) W'
+
+opposite in a pair (Cleary & Monaghan, J. Comput. Phys. 148 (1999) 227, with the arithmetic mean of K, so that wetting
+goes on into dry soil).  c is the inverse of -Σ V x² (1/r) W' on the lattice, which makes it exact there for quadratic
+H.  H = const stays, whatever the particles' places are: water at rest under its capillary fringe is exact.
+
+Walls and soil that ends let nothing through.  Places outside (`outside`) do: open water has H = its level and no
+resistance, so k_r = 1 there; into air water only leaves, with H_i - H_j = p_i/(ρ_w g), where p_i > 0: a seepage face to
+the first order in the spacing.
+
+Rates of all pieces advance together by a Runge-Kutta-Legendre scheme of the first order: s stages are stable for a step
+(s² + s)/2 times that of one (Meyer, Balsara & Aslam, J. Comput. Phys. 257 (2014) 594).
+"""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from continuum_sph.seepage.mixture import LEAST_POROSITY
+from continuum_sph.seepage.resistance import Resistance
+from continuum_sph.unsaturated.conductivity import CONNECTIVITY, relative_permeability
+from continuum_sph.unsaturated.outside import AIR, KIND, LEVEL, PX, PY, Outer
+from continuum_sph.unsaturated.retention import VanGenuchten, effective_saturation, pressure_and_slope
+from continuum_sph.water.bundles import Neighbours, image
+from continuum_sph.water.smoothing import kernel_slope
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
+from porescale.common.core.types import Floats
+
+X, Y, VOLUME, HEAD, CONDUCTIVITY, SLOPE, PRESSURE, EFFECTIVE = range(8)
+"""Columns of the state of a piece of soil: m, m, m²;  H, m;  k k_r, m/s;  dH/dw over the porosity, m;  p, Pa;  S_e."""
+CONTENT, FROM_WATER, TO_AIR = range(3)
+"""Columns of what is advanced: water of a piece of soil, what of it came from open water and went to air, kg/m."""
+SAFE = 0.7
+"""Share of the longest stable step that is taken: K and dH/dw grow within it where a front arrives."""
+CHANGE = 0.01
+"""Of the pores: by how much one step may change what is in those of any piece."""
+MOST_STAGES = 25
+"""Of one step; longer ones are split: round-off grows with s²."""
+
+
+class Properties(NamedTuple):
+    """density ρ_w kg/m³;  weight ρ_w g, N/m³;  connectivity l, m of k_r: 0 and 0 for k_r = 1;  place: volume of a
+    place outside, m²;  unity: c."""
+
+    density: Any
+    weight: Any
+    connectivity: Any
+    m: Any
+    place: Any
+    unity: Any
+
+
+@parallel_kernel
+def update_state(content, grains, permeability, retention, properties, state):
+    """Overwrites head, conductivity, slope, pressure and effective saturation in ``state`` (s, 8).
+
+    content (s, 3) kg/m;  grains (s,) m²: volume of solid;  permeability (s,) m/s;  retention: `RetentionNumbers`.
+    """
+    for i in prange(grains.shape[0]):
+        pores = max(1e-3 * state[i, VOLUME], state[i, VOLUME] - grains[i])
+        filling = content[i, CONTENT] / (properties.density * pores)
+        pressure, slope = pressure_and_slope(filling, retention)
+        effective = effective_saturation(filling, retention)
+        part = 1.0
+        if properties.m > 0.0:
+            part = relative_permeability(effective, properties.connectivity, properties.m)
+        state[i, HEAD] = pressure / properties.weight + state[i, Y]
+        state[i, CONDUCTIVITY] = permeability[i] * part
+        if filling > retention.wet - 2.0 * CHANGE:  # it may be full at the end of the step
+            slope = retention.stiffness
+        state[i, SLOPE] = slope / properties.weight * state[i, VOLUME] / pores
+        state[i, PRESSURE] = pressure
+        state[i, EFFECTIVE] = effective
+
+
+@inline
+def outside_rate(i, state, permeability, near, outer, place, shift):
+    """(rate from open water, rate to air, both m²/s over c V_i;  sum of conductances, 1/s) of piece i of soil.
+
+    shift: number of places, less that of the first soil row of their list;  the rest: of `flow_rates`.
+    """
+    own = permeability[i] + state[i, CONDUCTIVITY]
+    taken, given, conductance = 0.0, 0.0, 0.0
+    for k in range(np.uint64(outer.start[i]), np.uint64(outer.start[i + 1])):
+        j = np.uint64(outer.partner[k])
+        kind = outer.places[j, KIND]
+        if kind < 0.0 or (kind == AIR and state[i, PRESSURE] <= 0.0):
+            continue
+        dx = image(state[i, X] - outer.places[j, PX], near.period_x)
+        dy = image(state[i, Y] - outer.places[j, PY], near.period_y)
+        distance = np.sqrt(dx * dx + dy * dy)
+        part = -place * kernel_slope(near.kind, distance / near.h, near.h)
+        part *= distance / max(distance - 0.5 * np.sqrt(place), 0.5 * np.sqrt(place))
+        if kind == AIR:
+            given += part * 2.0 * state[i, CONDUCTIVITY] * (state[i, HEAD] - state[i, Y])
+            conductance += part * 2.0 * state[i, CONDUCTIVITY]
+        else:
+            taken += part * own * (outer.places[j, LEVEL] - state[i, HEAD])
+            conductance += part * own
+    return taken, given, conductance
+
+
+@parallel_kernel
+def flow_rates(state, permeability, near, outer, properties, rate):
+    """Overwrites ``rate`` (s, 3) kg/(m s), that of `CONTENT` and what came from water and went to air.
+
+    state (s, 8);  permeability (s,) m/s;  near: the list of soil, see `water.bundles`, of which partners that are no
+    walls are read;  outer: see `outside`, None without places.  Returns the largest rate (1/s) at which one piece goes
+    to the head of the others, and the largest over volumes, 1/s.
+    """
+    fastest = 0.0
+    quickest = 0.0
+    for i in prange(permeability.shape[0]):
+        within = 0.0
+        conductance = 0.0
+        for k in range(np.uint64(near.start[i]), np.uint64(near.split[i])):
+            j = np.uint64(near.partner[k])
+            dx = image(state[i, X] - state[j, X], near.period_x)
+            dy = image(state[i, Y] - state[j, Y], near.period_y)
+            part = -state[j, VOLUME] * kernel_slope(near.kind, np.sqrt(dx * dx + dy * dy) / near.h, near.h)
+            part *= state[i, CONDUCTIVITY] + state[j, CONDUCTIVITY]
+            within += part * (state[j, HEAD] - state[i, HEAD])
+            conductance += part
+        taken, given, more = exchanged(i, state, permeability, near, outer, properties.place)
+        whole = properties.unity * properties.density * state[i, VOLUME]
+        rate[i, CONTENT] = whole * (within + taken - given)
+        rate[i, FROM_WATER] = whole * taken
+        rate[i, TO_AIR] = whole * given
+        fastest = max(fastest, properties.unity * (conductance + more) * state[i, SLOPE])
+        quickest = max(quickest, abs(rate[i, CONTENT]) / (properties.density * state[i, VOLUME]))
+    return fastest, quickest
+
+
+@inline
+def exchanged(i, state, permeability, near, outer, place):
+    """What `outside_rate` gives; nothing without places."""
+    if outer is None:
+        return 0.0, 0.0, 0.0
+    return outside_rate(i, state, permeability, near, outer, place, 0)
+
+
+def unity(kind: int, ratio: float) -> float:
+    """c: the inverse of -Σ V x² (1/r) W' over a square lattice, h being ``ratio`` spacings of a kernel of a ``kind``."""
+    reach = math.ceil(2.0 * ratio)
+    sites = np.arange(-reach, reach + 1, dtype=float)
+    total = 0.0
+    for x in sites:
+        for y in sites:
+            if x or y:
+                total -= x * x * float(kernel_slope(kind, math.hypot(x, y) / ratio, ratio))
+    return 1.0 / total
+
+
+@dataclass
+class Moisture:
+    """Water in the pores of ``grains`` (s,) m² of solid with ``permeability`` (s,) m/s.
+
+    retention : of the soil;  properties : see `Properties`;  porosity : at the start;  resistance : how k follows the
+    porosity, None: it does not;  content (s, 3) kg/m: water, what of it came from outside
+    and what went to air, since the start.
+    """
+
+    retention: VanGenuchten
+    properties: Properties
+    grains: Floats
+    permeability: Floats
+    porosity: float
+    resistance: Resistance | None = None
+    content: Floats = field(init=False)
+    state: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        count = len(self.grains)
+        self.given = self.permeability.copy()
+        self.content, self.state = np.zeros((count, 3)), np.zeros((count, 8))
+        self._stages = [np.zeros((count, 3)) for _ in range(4)]
+
+    def place(self, x: Floats, volume: Floats) -> None:
+        """Take positions (s, 2) m and volumes (s,) m² of the soil."""
+        self.state[:, :2], self.state[:, VOLUME] = x, volume
+        if self.resistance is not None:
+            n = np.maximum(LEAST_POROSITY, 1.0 - self.grains / volume)
+            self.permeability[:] = self.given * n**3 / (1.0 - n) ** 2 / self.resistance.factor
+
+    def fill(self, pressure: Floats) -> None:
+        """Start from a ``pressure`` (s,) Pa in the pores of the volumes taken last."""
+        pores = self.state[:, VOLUME] - self.grains
+        self.content[:] = 0.0
+        self.content[:, CONTENT] = self.properties.density * pores * self.retention.filling(pressure)
+        self.update(self.content)
+
+    def update(self, content: Floats) -> None:
+        """Pressures and conductivities of a ``content`` (s, 3) kg/m."""
+        update_state(content, self.grains, self.permeability, self.retention.numbers, self.properties, self.state)
+
+    def rates(self, near: Neighbours, outer: Outer | None, rate: Floats) -> tuple[float, float]:
+        """Overwrite ``rate`` (s, 3) kg/(m s); returns what `flow_rates` does."""
+        fastest, quickest = flow_rates(self.state, self.permeability, near, outer, self.properties, rate)
+        return float(fastest), float(quickest)
+
+    def advance(self, seconds: float, near: Neighbours, outer: Outer | None) -> int:
+        """Let water flow for ``seconds``; returns the number of stages that it took."""
+        left, used = seconds, 0
+        while left > 0.0:
+            self.update(self.content)
+            first = self._stages[3]
+            fastest, quickest = self.rates(near, outer, first)
+            longest = SAFE / fastest if fastest > 0.0 else math.inf
+            wanted = min(left, CHANGE * self.porosity / quickest) if quickest > 0.0 else left
+            stages = max(1, math.ceil(0.5 * (math.sqrt(1.0 + 8.0 * min(wanted / longest, 1e6)) - 1.0) - 1e-9))
+            stages = min(MOST_STAGES, stages | 1)
+            step = min(wanted, 0.5 * longest * stages * (stages + 1))
+            self._legendre(step, stages, first, near, outer)
+            left = left - step if step < left else 0.0
+            used += stages
+        self.update(self.content)
+        return used
+
+    def _legendre(self, step: float, stages: int, first: Floats, near: Neighbours, outer: Outer | None) -> None:
+        """A ``step`` (s) of so many ``stages``, from the rates ``first``; overwrites ``content``."""
+        before, now, rate, _ = self._stages
+        weight = 2.0 * step / (stages * (stages + 1.0))
+        before[:] = self.content
+        np.multiply(first, weight, out=now)
+        now += before
+        for stage in range(2, stages + 1):
+            self.update(now)
+            self.rates(near, outer, rate)
+            mu = (2.0 * stage - 1.0) / stage
+            before *= (1.0 - stage) / stage
+            before += mu * now
+            before += mu * weight * rate
+            before, now = now, before
+        self.content[:] = now
+
+
+def properties_of(
+    density: float, gravity: float, retention: VanGenuchten, spacing: float, c: float, connectivity: float = CONNECTIVITY
+) -> Properties:
+    """Properties of water of a ``density`` (kg/m³) in soil of a ``retention``;  gravity m/s²;  c: of `unity`."""
+    return Properties(density, density * gravity, connectivity, retention.m, spacing * spacing, c)
