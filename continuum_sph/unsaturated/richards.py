@@ -16,7 +16,10 @@ resistance, so k_r = 1 there; into air water only leaves, with H_i - H_j = p_i/(
 the first order in the spacing.
 
 Rates of all pieces advance together by a Runge-Kutta-Legendre scheme of the first order: s stages are stable for a step
-(s² + s)/2 times that of one (Meyer, Balsara & Aslam, J. Comput. Phys. 257 (2014) 594).
+(s² + s)/2 times that of one (Meyer, Balsara & Aslam, J. Comput. Phys. 257 (2014) 594).  What it leaves of a wave that is
+faster than the step is a Legendre polynomial, of either sign.  A sign would turn round the pressure that squeezed pores
+leave at the end of a step, and drive the soil where it should brake it; so each step is two halves, which leave the
+square.
 """
 
 import math
@@ -216,12 +219,15 @@ class Moisture:
             fastest, quickest = self.rates(near, outer, first)
             longest = SAFE / fastest if fastest > 0.0 else math.inf
             wanted = min(left, CHANGE * self.porosity / quickest) if quickest > 0.0 else left
-            stages = max(1, math.ceil(0.5 * (math.sqrt(1.0 + 8.0 * min(wanted / longest, 1e6)) - 1.0) - 1e-9))
+            stages = max(1, math.ceil(0.5 * (math.sqrt(1.0 + 4.0 * min(wanted / longest, 1e6)) - 1.0) - 1e-9))
             stages = min(MOST_STAGES, stages | 1)
-            step = min(wanted, 0.5 * longest * stages * (stages + 1))
-            self._legendre(step, stages, first, near, outer)
+            step = min(wanted, longest * stages * (stages + 1))
+            self._legendre(0.5 * step, stages, first, near, outer)
+            self.update(self.content)
+            self.rates(near, outer, first)
+            self._legendre(0.5 * step, stages, first, near, outer)
             left = left - step if step < left else 0.0
-            used += stages
+            used += 2 * stages
         self.update(self.content)
         return used
 

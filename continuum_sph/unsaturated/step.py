@@ -32,11 +32,11 @@ class MoistSoil:
     stages: int = 0
     before_force: "Callable[[MoistSoil], None] | None" = None
     pore: Floats = field(init=False)  # (n,) Pa, π of soil and walls
-    around: Floats = field(init=False)  # (soil,) Pa
+    around: Floats = field(init=False)  # (soil, 2) Pa and 1/m², see `pore_stress`
 
     def __post_init__(self) -> None:
         soil = self.ground.soil
-        self.pore, self.around, self.share = np.zeros(soil.count), np.zeros(soil.soil), np.ones(soil.soil)
+        self.pore, self.around, self.share = np.zeros(soil.count), np.zeros((soil.soil, 2)), np.ones(soil.soil)
 
     @property
     def step(self) -> int:
@@ -105,7 +105,10 @@ class MoistSoil:
             self.water.properties.weight, self.pore, self.around,
         )  # fmt: skip
         np.multiply(weight[:, None], ground.law.gravity, out=soil.force)
-        pore_forces(n, soil.record, soil.facing, soil.matrix, ground.near, self.pore, self.around, soil.force)
+        pore_forces(
+            n, soil.record, soil.facing, soil.matrix, ground.near, self.pore, self.around,
+            self.water.properties.weight, soil.force,
+        )  # fmt: skip
         if self.before_force is not None:
             self.before_force(self)
         ground.push()
