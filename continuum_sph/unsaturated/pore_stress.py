@@ -30,8 +30,8 @@ def borne(pressure, effective):
 
 @parallel_kernel
 def pore_pressures(soil, state, record, facing, near, outer, weight, pore, around):
-    """Overwrites ``pore`` (n,) Pa, π of soil and of walls, and ``around`` (soil, 2): p° of what kernels see, Pa, and how
-    much they see, 1/m².
+    """Overwrites ``pore`` (n,) Pa, π of soil and of walls, and ``around`` (soil, 2): p° of what kernels see, Pa, and
+    how much they see, 1/m².
 
     state: of `richards`;  record (n, 16), facing (n, 4): of `soil.Soil`;  near: its list;  outer: see `outside`;
     weight ρ_w g, N/m³.

@@ -4,16 +4,18 @@
 
 Source: van Genuchten, Soil Sci. Soc. Am. J. 44 (1980) 892, eqs 3, 21, 22.
 
-The state variable is the filling w = m_w/(ρ_w n V): water in a piece of soil over what its pores hold.  ψ(S) rises
-upright at both ends, at S = 1 and S_r; there p(w) goes on as a straight line with the stiffness K_w of the water, which
-is then also what compresses full pores:
+The state variable is the filling w = m_w/(ρ_w n V): water in a piece of soil over what its pores hold.  ψ(S) is upright
+at both ends, at S = 1 and S_r; there p(w) goes on as a straight line with the stiffness K_w of the water, which then is
+also what compresses full pores:
 
-    p = -ρ_w g ψ(S = w)  for w_dry < w < w_wet,   p = p_wet + K_w (w - w_wet)  beyond,   p = p_dry + K_w (w - w_dry) below
+    p = -ρ_w g ψ(S = w)          for w_dry < w < w_wet
+    p = p_wet + K_w (w - w_wet)  beyond,   p = p_dry + K_w (w - w_dry)  below
 
-w_wet and w_dry are where dp/dw = K_w, so p and its slope are continuous, no piece of soil is stiffer than its water, and
+w_wet and w_dry are where dp/dw = K_w: p and its slope are continuous, no piece of soil is stiffer than its water, and
 p(w) needs no iteration.  1 - w_wet is of the order of 1e-4.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -95,7 +97,7 @@ class VanGenuchten:
         """dp/dw, Pa, of the curve at an ``effective`` saturation in (0, 1)."""
         power = effective ** (-1.0 / self.m)
         suction = self.weight * float(self.suction(effective))
-        return suction / (self.n * self.m) * power / ((power - 1.0) * effective * (1.0 - self.residual))
+        return float(suction / (self.n * self.m) * power / ((power - 1.0) * effective * (1.0 - self.residual)))
 
     @cached_property
     def numbers(self) -> RetentionNumbers:
@@ -108,19 +110,20 @@ class VanGenuchten:
                 Fault("water.sound_speed", self.stiffness, "makes water softer than its suction in pores", "Pa",
                       f"K_w > {slopes.min():.3g}", "raise it, or soil.suction.alpha")
             )  # fmt: skip
-        ends = [
-            brentq(lambda log: self.slope(_place(log, wet=wet)) - self.stiffness,
-                   np.log(LEAST), np.log(1.0 - middle if wet else middle))
-            if self.slope(_place(np.log(LEAST), wet=wet)) > self.stiffness else np.log(LEAST)
-            for wet in (True, False)
-        ]  # fmt: skip
-        wet, dry = _place(ends[0], wet=True), _place(ends[1], wet=False)
+        wet, dry = self._end(1.0 - middle, wet=True), self._end(middle, wet=False)
         filled, left = (self.residual + (1.0 - self.residual) * at for at in (wet, dry))
         return RetentionNumbers(
             1.0 / self.n, 1.0 / self.m, self.residual, self.weight / self.alpha,
             filled, -self.weight * float(self.suction(wet)), left, -self.weight * float(self.suction(dry)),
             self.stiffness,
         )  # fmt: skip
+
+    def _end(self, farthest: float, *, wet: bool) -> float:
+        """S_e, within ``farthest`` of its wet or of its dry end, where the curve is as steep as the water is stiff."""
+        first, last = math.log(LEAST), math.log(farthest)
+        if self.slope(_place(first, wet=wet)) <= self.stiffness:
+            return _place(first, wet=wet)
+        return _place(float(brentq(lambda at: self.slope(_place(at, wet=wet)) - self.stiffness, first, last)), wet=wet)
 
     def filling(self, pressure: Floats) -> Floats:
         """w at a ``pressure`` (Pa, above that of the air), the inverse of p(w)."""
@@ -134,4 +137,4 @@ class VanGenuchten:
 
 def _place(logarithm: float, *, wet: bool) -> float:
     """S_e whose distance from its wet end, or from its dry end, has this ``logarithm``."""
-    return float(1.0 - np.exp(logarithm)) if wet else float(np.exp(logarithm))
+    return 1.0 - math.exp(logarithm) if wet else math.exp(logarithm)

@@ -2,8 +2,8 @@
 
     ∂(ρ_w n w)/∂t = ρ_w ∇·(K ∇H),   H = p/(ρ_w g) + y,   K = k k_r
 
-with w, p of `retention`, k_r of `conductivity`.  Water m_w of a particle is conserved; its pores are V less the volume of
-its grains, so soil that is compressed raises p, and full pores have the stiffness K_w/n.  Between particles
+with w, p of `retention`, k_r of `conductivity`.  Water m_w of a particle is conserved; its pores are V less the volume
+of its grains, so soil that is compressed raises p, and full pores have the stiffness K_w/n.  Between particles
 
     dm_i/dt = c ρ_w V_i Σ_j V_j (K_i + K_j) (H_i - H_j) (1/r) W'
 
@@ -12,14 +12,14 @@ goes on into dry soil).  c is the inverse of -Σ V x² (1/r) W' on the lattice, 
 H.  H = const stays, whatever the particles' places are: water at rest under its capillary fringe is exact.
 
 Walls and soil that ends let nothing through.  Places outside (`outside`) do: open water has H = its level and no
-resistance, so k_r = 1 there; into air water only leaves, with H_i - H_j = p_i/(ρ_w g), where p_i > 0: a seepage face to
-the first order in the spacing.
+resistance, so k_r = 1 there, and the half spacing of it that a pair crosses costs no head; into air water only leaves,
+with H_i - H_j = p_i/(ρ_w g), where p_i > 0: a seepage face to the first order in the spacing.
 
 Rates of all pieces advance together by a Runge-Kutta-Legendre scheme of the first order: s stages are stable for a step
-(s² + s)/2 times that of one (Meyer, Balsara & Aslam, J. Comput. Phys. 257 (2014) 594).  What it leaves of a wave that is
-faster than the step is a Legendre polynomial, of either sign.  A sign would turn round the pressure that squeezed pores
-leave at the end of a step, and drive the soil where it should brake it; so each step is two halves, which leave the
-square.
+(s² + s)/2 times that of one (Meyer, Balsara & Aslam, J. Comput. Phys. 257 (2014) 594).  What it leaves of a wave that
+is faster than the step is a Legendre polynomial, of either sign.  A negative one would turn round the pressure that
+pores have at the end of a step in which they are squeezed, and drive the soil where it should brake it; so each step is
+two halves, which leave the square.
 """
 
 import math
@@ -86,12 +86,13 @@ def update_state(content, grains, permeability, retention, properties, state):
 
 
 @inline
-def outside_rate(i, state, permeability, near, outer, place, shift):
+def outside_rate(i, state, permeability, near, outer, place):
     """(rate from open water, rate to air, both m²/s over c V_i;  sum of conductances, 1/s) of piece i of soil.
 
-    shift: number of places, less that of the first soil row of their list;  the rest: of `flow_rates`.
+    place: volume of a place, m²;  the rest: of `flow_rates`.
     """
     own = permeability[i] + state[i, CONDUCTIVITY]
+    half = 0.5 * np.sqrt(place)
     taken, given, conductance = 0.0, 0.0, 0.0
     for k in range(np.uint64(outer.start[i]), np.uint64(outer.start[i + 1])):
         j = np.uint64(outer.partner[k])
@@ -101,8 +102,9 @@ def outside_rate(i, state, permeability, near, outer, place, shift):
         dx = image(state[i, X] - outer.places[j, PX], near.period_x)
         dy = image(state[i, Y] - outer.places[j, PY], near.period_y)
         distance = np.sqrt(dx * dx + dy * dy)
+        within = max(distance - half, half)  # how much of it lies in soil
         part = -place * kernel_slope(near.kind, distance / near.h, near.h)
-        part *= distance / max(distance - 0.5 * np.sqrt(place), 0.5 * np.sqrt(place))
+        part *= distance / within
         if kind == AIR:
             given += part * 2.0 * state[i, CONDUCTIVITY] * (state[i, HEAD] - state[i, Y])
             conductance += part * 2.0 * state[i, CONDUCTIVITY]
@@ -148,11 +150,11 @@ def exchanged(i, state, permeability, near, outer, place):
     """What `outside_rate` gives; nothing without places."""
     if outer is None:
         return 0.0, 0.0, 0.0
-    return outside_rate(i, state, permeability, near, outer, place, 0)
+    return outside_rate(i, state, permeability, near, outer, place)
 
 
 def unity(kind: int, ratio: float) -> float:
-    """c: the inverse of -Σ V x² (1/r) W' over a square lattice, h being ``ratio`` spacings of a kernel of a ``kind``."""
+    """c: the inverse of -Σ V x² (1/r) W' over a square lattice, of a kernel of a ``kind`` with h ``ratio`` spacings."""
     reach = math.ceil(2.0 * ratio)
     sites = np.arange(-reach, reach + 1, dtype=float)
     total = 0.0
@@ -250,7 +252,12 @@ class Moisture:
 
 
 def properties_of(
-    density: float, gravity: float, retention: VanGenuchten, spacing: float, c: float, connectivity: float = CONNECTIVITY
+    density: float,
+    gravity: float,
+    retention: VanGenuchten,
+    spacing: float,
+    c: float,
+    connectivity: float = CONNECTIVITY,
 ) -> Properties:
     """Properties of water of a ``density`` (kg/m³) in soil of a ``retention``;  gravity m/s²;  c: of `unity`."""
     return Properties(density, density * gravity, connectivity, retention.m, spacing * spacing, c)

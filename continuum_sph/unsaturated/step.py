@@ -21,8 +21,8 @@ class MoistSoil:
     """Soil and the water that it carries.
 
     ground : the soil, its mass that of the grains;  water : in its pores;  outside : what lies about it;
-    modulus : largest M of the soil, Pa;  stages : of all steps, that the flow of water took;  before_force : called before
-    accelerations, to add to ``ground.soil.force``.
+    modulus : largest M of the soil, Pa;  stages : of all steps, that the flow of water took;  before_force : called
+    before accelerations, to add to ``ground.soil.force``.
     """
 
     ground: SoilFlow

@@ -26,6 +26,7 @@ PHYSICS = {
     "continuum_sph.water": (),
     "continuum_sph.soil": ("continuum_sph.water",),
     "continuum_sph.seepage": ("continuum_sph.water", "continuum_sph.soil"),
+    "continuum_sph.unsaturated": ("continuum_sph.water", "continuum_sph.soil", "continuum_sph.seepage"),
 }
 """Folders of physics, and which lower ones each may import."""
 READS_RUNS = ("porescale.common.record", "porescale.common.pictures", "porescale.common.schema")

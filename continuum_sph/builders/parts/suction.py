@@ -13,7 +13,7 @@ from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.stress import XX, XY, YY, ZZ
-from continuum_sph.unsaturated import Level, Moisture, MoistSoil, Outside, VanGenuchten
+from continuum_sph.unsaturated import Level, MoistSoil, Moisture, Outside, VanGenuchten
 from continuum_sph.unsaturated.pore_stress import borne
 from continuum_sph.unsaturated.richards import (
     CONTENT,

@@ -6,7 +6,6 @@ on cells of equal height, implicit, the mixed form by modified Picard iterations
 Zarba, Water Resour. Res. 26 (1990) 1483.  Means of k_r between cells are arithmetic.  Pores and water do not give.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,7 +46,10 @@ class VanGenuchtenMualem:
 
 @dataclass(frozen=True)
 class Gardner:
-    """k_r = exp(a ψ_p), S the same (Gardner, Soil Sci. 85 (1958) 228): steady flow has a closed form.  rate : a, 1/m."""
+    """k_r = exp(a ψ_p), S the same (Gardner, Soil Sci. 85 (1958) 228): steady flow has a closed form.
+
+    rate : a, 1/m.
+    """
 
     rate: float
 
@@ -107,7 +109,9 @@ class Column:
         """What one iteration adds to ``head``, from water ``old`` (cells,) of the last step."""
         dy, k = self.height / self.cells, self.permeability
         slope = 1e-7
-        capacity = self.porosity * (self.soil.saturation(head + slope) - self.soil.saturation(head - slope)) / (2 * slope)
+        capacity = (
+            self.porosity * (self.soil.saturation(head + slope) - self.soil.saturation(head - slope)) / (2 * slope)
+        )
         relative = self.soil.relative(head)
         between = 0.5 * k * (relative[1:] + relative[:-1])
         flux = np.zeros(self.cells + 1)  # upward, at the faces
@@ -140,6 +144,3 @@ def relaxed(column: Column, head: Floats, seconds: float, most: float, first: fl
         time += step
         step *= 1.1
     return head
-
-
-Initial = Callable[[Floats], Floats]

@@ -1,0 +1,112 @@
+"""Columns in which water rises, sinks and drains."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from continuum_sph.unsaturated.richards import CONTENT, FROM_WATER, PRESSURE, TO_AIR, flow_rates, update_state
+from continuum_sph.validation.unsaturated import columns
+from continuum_sph.validation.unsaturated.columns import DRAINING, RISING, SINKING, Soaking, error, held
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.constants import GRAVITY
+
+COARSE = replace(RISING, rows=10)
+
+
+def test_water_at_rest_under_its_fringe_stays():
+    run = Soaking(rows=10, below=0.1).build()
+    water = run.water
+    heights = water.state[:, 1].copy()
+    water.fill(1000.0 * GRAVITY * (0.1 - heights))
+    water.update(water.content)
+    np.testing.assert_allclose(run.heads, 0.1, atol=1e-9)  # p(w) undoes w(p) to 1e-8 of a fringe of 0.2 m
+    before = water.content[:, CONTENT].copy()
+    run.advance(60.0)
+    np.testing.assert_allclose(run.heads, 0.1, atol=1e-9)
+    np.testing.assert_allclose(water.content[:, CONTENT], before, rtol=1e-8)
+
+
+def test_water_that_comes_and_goes_is_counted_to_the_last_bit_but_round_off():
+    for given in (COARSE, replace(SINKING, rows=10), replace(DRAINING, rows=10)):
+        run = given.build()
+        before = run.water.content[:, CONTENT].sum()
+        run.advance(20.0)
+        now, came, went = run.water.content[:, [CONTENT, FROM_WATER, TO_AIR]].sum(axis=0)
+        assert abs(came) > 0.01 * before
+        # a sum over stages, each with a rounding of the whole
+        assert now - before == pytest.approx(came - went, abs=run.stages * np.finfo(float).eps * now)
+
+
+def test_full_soil_over_air_drains_through_its_face_only_where_it_is_pressed():
+    run = replace(DRAINING, rows=10, below=None, height=0.6).build()  # air under it and over it
+    water = run.water
+    water.fill(1000.0 * GRAVITY * (0.45 - water.state[:, 1]))  # full, pressed below 0.45 m
+    run.advance(5.0)
+    assert water.content[:, TO_AIR].sum() > 0.0
+    assert water.content[:, TO_AIR].reshape(10, -1)[5:].sum() < 1e-3 * water.content[:, TO_AIR].sum()
+    assert water.state[:, PRESSURE].max() < 1000.0 * GRAVITY * 0.6
+
+
+@pytest.mark.parametrize(("given", "seconds"), [(RISING, 60.0), (SINKING, 30.0), (DRAINING, 100.0)])
+def test_half_the_spacing_leaves_less_error(given, seconds):
+    coarse, fine = (error(replace(given, rows=rows), seconds) for rows in (10, 20))
+    assert fine < 0.7 * coarse < 0.7 * 0.5 / 10
+    # a front moves on within its row: 0.65 is asked of 20 to 40 rows by the slow rows
+
+
+@pytest.mark.parametrize(("given", "seconds"), [(RISING, 120.0), (DRAINING, 300.0)])
+def test_soil_that_lets_water_through_as_if_it_were_full_is_wrong(given, seconds):  # the twin that must fail
+    given = replace(given, rows=20)
+    wrong = replace(given, relative=False).build().advance(seconds)
+    y, found = wrong.profile()
+    at, known = given.reference(seconds)
+    assert np.abs(found - np.interp(y, at, known)).mean() > 3.0 * 0.5 / 20  # of rows that allow 0.5/20
+    assert error(given, seconds) < 0.5 / 20
+
+
+def test_errors_that_stay_are_refused():  # the twin of the rows
+    assert held((0.02, 0.01, 0.005)).error < 1.0
+    assert held((0.02, 0.02, 0.02)).error > 1.0
+    assert held((0.2, 0.1, 0.05)).error > 1.0
+
+
+def test_the_compiled_flow_is_the_plain_one():
+    run = Soaking(rows=5, below=0.1, above=0.65).build()
+    water, outer = run.water, run.outside.outer
+    compiled, plain = np.zeros((len(water.grains), 3)), np.zeros((len(water.grains), 3))
+    state = water.state.copy()
+    one = water.rates(run.near, outer, compiled)
+    two = flow_rates.py_func(water.state, water.permeability, run.near, outer, water.properties, plain)
+    np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(one, two, rtol=1e-12)
+    update_state.py_func(
+        water.content, water.grains, water.permeability, water.retention.numbers, water.properties, water.state
+    )
+    np.testing.assert_allclose(water.state, state, rtol=1e-12)
+
+
+def test_flow_between_pieces_is_opposite():
+    run = Soaking(rows=10).build()  # closed below, air above
+    water = run.water
+    rng = np.random.default_rng(1)
+    water.fill(-2000.0 * (1.0 + rng.random(len(water.grains))))
+    water.update(water.content)
+    rate = np.zeros((len(water.grains), 3))
+    water.rates(run.near, run.outside.outer, rate)
+    assert abs(rate[:, CONTENT].sum()) < 1e-12 * np.abs(rate[:, CONTENT]).sum()
+
+
+@pytest.mark.slow
+def test_one_thread_and_many_give_the_same_water():
+    ends = []
+    for threads in (1, 2):
+        set_threads(threads)
+        ends.append(COARSE.build().advance(10.0).water.content.copy())
+    assert np.array_equal(*ends)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("row", [columns.rise_row, columns.infiltration_row, columns.drainage_row])
+def test_rows_hold(row):
+    assert row().error <= 1.0

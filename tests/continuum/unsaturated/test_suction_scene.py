@@ -1,0 +1,189 @@
+"""Scenes of soil with suction: refused, built, at rest, resumed; and scenes without, that build none of it."""
+
+import numpy as np
+import pytest
+
+from continuum_sph.builders import simulation
+from continuum_sph.builders.parts import suction
+from continuum_sph.builders.parts.suction import MoisturePart, retention_of
+from continuum_sph.builders.report import report
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.scene.sections import Scene
+from continuum_sph.soil import SoilFlow
+from continuum_sph.soil.stress import YY
+from continuum_sph.unsaturated.pore_stress import borne
+from continuum_sph.unsaturated.richards import CONTENT, EFFECTIVE, HEAD, PRESSURE
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
+from tests.reference.same_run import leaves
+
+OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]
+SUCTION = {"alpha": 5.0, "n": 3.0, "residual": 0.1, "water_table": 0.1}
+
+
+def scene(given=SUCTION, soil=None, **changes):
+    table = {
+        "tank": {"width": 0.3, "height": 0.4},
+        "water": {"sound_speed": 75.0},
+        "soil": {"stiffness": 1e6, "permeability": 1e-3, "body": [{"outline": OUTLINE}]} | (soil or {}),
+        "numerics": {"spacing": 0.02},
+        "time": {"end": 1.0},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+    }
+    if given is not None:
+        table["soil"]["suction"] = given
+    return validate(Scene, table | changes)
+
+
+UNDER = {"reservoir": [{"left": 0, "right": 0.3, "bottom": 0.2, "level": 0.3}]}
+
+
+@pytest.mark.parametrize(
+    ("given", "changes", "key"),
+    [
+        ({"saturation": 0.5}, {}, "suction: needs a saturation or a water_table"),
+        ({"water_table": None}, {}, "suction: needs a saturation or a water_table"),
+        ({"water_table": None, "saturation": 0.05}, {}, "suction.saturation = 0.05"),
+        ({"n": 1.0}, {}, r"suction\.n"),
+        ({"alpha": -1.0}, {}, r"suction\.alpha"),
+        ({"beta": 1.0}, {}, "beta"),
+        ({}, {"gravity": 0.0}, "gravity"),
+        ({}, {"water": {}}, r"water\.sound_speed"),
+        ({}, {"water": {"column": [{"width": 0.3, "height": 0.3}]}}, r"water\.column"),
+        ({}, {"probe": [{"x": 0.1, "y": 0.1}]}, "probe"),
+        ({}, {"air": {}}, "air"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_its_key(given, changes, key):
+    with pytest.raises(InputError, match=key):
+        scene(SUCTION | given, **changes)
+
+
+def test_check_says_how_high_water_is_drawn_and_how_soon():
+    out = report(scene())
+    text = str(out)
+    fringe = float(retention_of(scene()).suction(0.5))
+    assert fringe == pytest.approx((0.5**-1.5 - 1.0) ** (1.0 / 3.0) / 5.0)
+    for part in ("capillary height", "time to rise as high", "cohesion of half full pores", "stages of flow"):
+        assert part in text
+    assert f"{fringe:.4g}"[:5] in text
+
+
+def test_check_warns_of_water_that_is_soft_and_of_levels_over_the_crest():
+    assert any("n M" in it for it in report(scene(water={"sound_speed": 20.0})).warnings)
+    assert any("both sides" in it for it in report(scene(**UNDER)).warnings)
+    assert not report(scene()).warnings
+
+
+def test_check_refuses_water_softer_than_suction():
+    given = SUCTION | {"alpha": 0.001, "n": 1.1, "water_table": 0.1}
+    with pytest.raises(InputError, match="sound_speed"):
+        report(scene(given, water={"sound_speed": 1.0}))
+
+
+@pytest.mark.slow
+def test_a_column_over_its_water_table_stays_at_rest():
+    model = Simulation(scene())
+    both = model.flow
+    soil, n = both.ground.soil, both.ground.soil.soil
+    depth = 0.2 - soil.x[:n, 1]
+    state = both.water.state
+    pore = np.array([borne(*it) for it in zip(state[:, PRESSURE], state[:, EFFECTIVE], strict=True)])
+    # what is over a particle, water of its pores between residual and full, less what the pores bear
+    low, high = (GRAVITY * (1590.0 + s * 400.0) * depth - pore for s in (0.1, 1.0))
+    assert (soil.stress[:n, YY] > low - 1e-6).all()
+    assert (soil.stress[:n, YY] < high + 1e-6).all()
+    model.advance(800)
+    model.check()
+    # It sinks as soil does that is placed on its lattice, by a share of its elastic settlement (γ + suction) H/M
+    assert model.series()["largest displacement (m)"] < 0.1 * (1990.0 * GRAVITY * 0.2 + 1000.0) * 0.2 / 1.35e6
+    np.testing.assert_allclose(state[:, HEAD], 0.1, atol=0.002)  # what its strain has squeezed out flows in a second
+
+
+@pytest.mark.slow
+def test_soil_under_open_water_bears_its_weight_less_buoyancy():
+    model = Simulation(scene(SUCTION | {"water_table": 0.3}, soil={"permeability": 1e-2}, **UNDER))
+    soil, n = model.flow.ground.soil, model.flow.ground.soil.soil
+    before = soil.stress[:n, YY].mean()
+    assert before == pytest.approx(0.6 * 1650.0 * GRAVITY * 0.1, rel=0.01)
+    model.advance(1500)
+    model.check()
+    assert soil.stress[:n, YY].mean() == pytest.approx(before, rel=0.03)
+    # forces of p and weight cancel but at the ends of the column, where they settle it by a row's share, 1/10, of its
+    # elastic settlement
+    assert model.series()["largest displacement (m)"] < 0.1 * 0.6 * 1650.0 * GRAVITY * 0.2**2 / 2.0 / 1.35e6 * 10.0
+
+
+@pytest.mark.slow
+def test_soil_that_forgets_the_water_on_it_is_pressed_apart(monkeypatch):  # the twin that must fail
+    from continuum_sph.unsaturated import step
+
+    def alone(soil, record, facing, matrix, near, pore, around, weight, force):
+        around[:] = 0.0
+        around[:, 1] = 1.0
+        forces(soil, record, facing, matrix, near, pore, around, weight, force)
+
+    forces = step.pore_forces
+    monkeypatch.setattr(step, "pore_forces", alone)
+    model = Simulation(scene(SUCTION | {"water_table": 0.3}, soil={"permeability": 1e-2}, **UNDER))
+    model.advance(300)
+    assert model.series()["largest displacement (m)"] > 0.1 * 0.6 * 1650.0 * GRAVITY * 0.2**2 / 2.0 / 1.35e6 * 10.0
+
+
+@pytest.mark.slow
+def test_a_steep_face_stands_by_suction_and_falls_without():
+    tower = {"body": [{"outline": [[0, 0], [0.1, 0], [0.1, 0.2], [0, 0.2]]}], "numerics": {"settle": 0.1}}
+    moist = SUCTION | {"water_table": None, "saturation": 0.6}
+    ends = []
+    for given in (moist, None):
+        model = Simulation(scene(given, soil=tower))
+        while model.time < 0.35:
+            model.advance(1)
+        ends.append(model.series()["front (m)"])
+    # S_e ψ of 0.556 and 0.22 m is 1200 Pa, cohesion 690 Pa: H_c = 4 c tan(60°)/γ = 0.27 m, of 0.2
+    assert ends[0] < 0.105
+    assert ends[1] > 0.13
+
+
+@pytest.mark.slow
+def test_a_resumed_run_goes_on_bit_for_bit():
+    rising = {"reservoir": [{"left": 0, "right": 0.3, "bottom": 0.2, "rise": [[0.0, 0.2], [0.01, 0.3]]}]}
+    whole, part, resumed = (Simulation(scene(**rising)) for _ in range(3))
+    whole.advance(60)
+    part.advance(23)
+    resumed.restore(part.state())
+    assert dict(leaves(resumed.state())) == dict(leaves(part.state()))
+    resumed.advance(37)
+    assert dict(leaves(resumed.state())) == dict(leaves(whole.state()))
+    assert whole.series() == resumed.series()
+    shown = resumed.snapshot().clouds["particles"].data
+    assert {"saturation", "suction", "pore_pressure"} <= set(shown)
+
+
+def test_a_scene_without_suction_builds_none_of_it(monkeypatch):
+    def never(*_):
+        raise AssertionError("built")
+
+    for name in ("assemble", "moist_soil", "MoisturePart", "Moisture", "MoistSoil"):
+        monkeypatch.setattr(suction, name, never)
+    monkeypatch.setattr(simulation.suction, "assemble", never)
+    model = Simulation(scene(None, water={}))
+    assert type(model.flow) is SoilFlow
+    assert not any(isinstance(part, MoisturePart) for part in model.parts)
+    model.advance(2)
+    assert not any("saturation" in name or "suction" in name for name in model.series())
+    assert "moisture" not in model.state()
+    assert "saturation" not in model.snapshot().clouds["particles"].data
+
+
+@pytest.mark.slow
+def test_water_is_kept_while_soil_moves():
+    model = Simulation(scene(SUCTION | {"water_table": None, "saturation": 0.9}, soil={"friction_angle": "5 degree"}))
+    before = model.flow.water.content[:, CONTENT].sum()
+    model.advance(300)
+    row = model.series()
+    now = row["water in pores (kg/m)"]
+    assert now == pytest.approx(
+        before + row["water from reservoirs (kg/m)"] - row["water seeped out (kg/m)"], rel=1e-11
+    )
