@@ -102,8 +102,8 @@ class Soaking:
         top = None if self.above is None else self.above - self.height
         column = Column(soil, self.height, cells, self.permeability, self.porosity, self.below, top)
         head = relaxed(column, self.start(law, column.y), seconds, seconds / 400.0, seconds / 1e5)
-        part: Floats = (soil.saturation(head) - self.residual) / (1.0 - self.residual)
-        return column.y, part
+        part = (soil.saturation(head) - self.residual) / (1.0 - self.residual)
+        return column.y, np.asarray(part, np.float64)
 
 
 @dataclass
@@ -127,7 +127,8 @@ class Run:
         """(heights of the rows, their mean effective saturations)."""
         given = self.given
         found = self.water.state[:, EFFECTIVE].reshape(given.rows, COLUMNS).mean(axis=1)
-        return (np.arange(given.rows) + 0.5) * given.spacing, found
+        heights = np.asarray((np.arange(given.rows) + 0.5) * given.spacing, np.float64)
+        return heights, np.asarray(found, np.float64)
 
     @property
     def heads(self) -> Floats:
