@@ -1,5 +1,6 @@
 # The public names of continuum_sph.validation.unsaturated: its topics.
 from . import columns as columns
 from . import richards as richards
+from . import slices as slices
 
-__all__ = ["columns", "richards"]
+__all__ = ["columns", "richards", "slices"]
