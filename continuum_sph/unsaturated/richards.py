@@ -31,7 +31,7 @@ import numpy as np
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.unsaturated.conductivity import CONNECTIVITY, relative_permeability
-from continuum_sph.unsaturated.outside import AIR, KIND, LEVEL, PX, PY, Outer
+from continuum_sph.unsaturated.outside import KIND, LEVEL, PX, PY, Outer
 from continuum_sph.unsaturated.retention import VanGenuchten, effective_saturation, pressure_and_slope
 from continuum_sph.water.bundles import Neighbours, image
 from continuum_sph.water.smoothing import kernel_slope
@@ -85,57 +85,73 @@ def update_state(content, grains, permeability, retention, properties, state):
         state[i, EFFECTIVE] = effective
 
 
-@inline
-def outside_rate(i, state, permeability, near, outer, place):
-    """(rate from open water, rate to air, both m²/s over c V_i;  sum of conductances, 1/s) of piece i of soil.
+@parallel_kernel
+def pair_weights(state, near, outer, place, weight, outer_weight):
+    """Overwrites ``weight`` (m,) and ``outer_weight`` (k,), 1/m²: -V_j (1/r) W' of every pair of soil and of
+    every place that a row of soil sees, the latter over the share of the pair that lies in soil, 0 of covered places.
 
-    place: volume of a place, m²;  the rest: of `flow_rates`.
+    state (s, 8): places and volumes;  near, outer: see `flow_rates`;  place: volume of a place, m².
+    """
+    half = 0.5 * np.sqrt(place)
+    for i in prange(state.shape[0]):
+        for k in range(np.uint64(near.start[i]), np.uint64(near.split[i])):
+            j = np.uint64(near.partner[k])
+            dx = image(state[i, X] - state[j, X], near.period_x)
+            dy = image(state[i, Y] - state[j, Y], near.period_y)
+            weight[k] = -state[j, VOLUME] * kernel_slope(near.kind, np.sqrt(dx * dx + dy * dy) / near.h, near.h)
+        for k in range(np.uint64(outer.start[i]), np.uint64(outer.start[i + 1])):
+            j = np.uint64(outer.partner[k])
+            outer_weight[k] = 0.0
+            if outer.places[j, KIND] >= 0.0:
+                dx = image(state[i, X] - outer.places[j, PX], near.period_x)
+                dy = image(state[i, Y] - outer.places[j, PY], near.period_y)
+                distance = np.sqrt(dx * dx + dy * dy)
+                within = max(distance - half, half)
+                outer_weight[k] = -place * kernel_slope(near.kind, distance / near.h, near.h) * distance / within
+
+
+@inline
+def outside_rate(i, state, permeability, outer, weight):
+    """(rate from open water, rate to air, both 1/s over c V_i;  sum of conductances, 1/s) of piece i of soil.
+
+    weight: the outer one of `pair_weights`;  the rest: of `flow_rates`.
     """
     own = permeability[i] + state[i, CONDUCTIVITY]
-    half = 0.5 * np.sqrt(place)
+    pressed = state[i, PRESSURE] > 0.0
+    leaving = 2.0 * state[i, CONDUCTIVITY] if pressed else 0.0
     taken, given, conductance = 0.0, 0.0, 0.0
     for k in range(np.uint64(outer.start[i]), np.uint64(outer.start[i + 1])):
         j = np.uint64(outer.partner[k])
-        kind = outer.places[j, KIND]
-        if kind < 0.0 or (kind == AIR and state[i, PRESSURE] <= 0.0):
-            continue
-        dx = image(state[i, X] - outer.places[j, PX], near.period_x)
-        dy = image(state[i, Y] - outer.places[j, PY], near.period_y)
-        distance = np.sqrt(dx * dx + dy * dy)
-        within = max(distance - half, half)  # how much of it lies in soil
-        part = -place * kernel_slope(near.kind, distance / near.h, near.h)
-        part *= distance / within
-        if kind == AIR:
-            given += part * 2.0 * state[i, CONDUCTIVITY] * (state[i, HEAD] - state[i, Y])
-            conductance += part * 2.0 * state[i, CONDUCTIVITY]
+        if outer.places[j, KIND] > 0.0:
+            taken += weight[k] * own * (outer.places[j, LEVEL] - state[i, HEAD])
+            conductance += weight[k] * own
         else:
-            taken += part * own * (outer.places[j, LEVEL] - state[i, HEAD])
-            conductance += part * own
-    return taken, given, conductance
+            given += weight[k] * leaving
+            conductance += weight[k] * leaving
+    return taken, given * (state[i, HEAD] - state[i, Y]), conductance
 
 
 @parallel_kernel
-def flow_rates(state, permeability, near, outer, properties, rate):
+def flow_rates(state, permeability, near, outer, weight, outer_weight, properties, rate):
     """Overwrites ``rate`` (s, 3) kg/(m s), that of `CONTENT` and what came from water and went to air.
 
     state (s, 8);  permeability (s,) m/s;  near: the list of soil, see `water.bundles`, of which partners that are no
-    walls are read;  outer: see `outside`, None without places.  Returns the largest rate (1/s) at which one piece goes
-    to the head of the others, and the largest over volumes, 1/s.
+    walls are read;  outer: see `outside`;  weight, outer_weight: of `pair_weights`.  Returns the largest rate (1/s) at
+    which one piece goes to the head of the others, and the largest over volumes, 1/s.
     """
     fastest = 0.0
     quickest = 0.0
     for i in prange(permeability.shape[0]):
         within = 0.0
         conductance = 0.0
+        head = state[i, HEAD]
+        own = state[i, CONDUCTIVITY]
         for k in range(np.uint64(near.start[i]), np.uint64(near.split[i])):
             j = np.uint64(near.partner[k])
-            dx = image(state[i, X] - state[j, X], near.period_x)
-            dy = image(state[i, Y] - state[j, Y], near.period_y)
-            part = -state[j, VOLUME] * kernel_slope(near.kind, np.sqrt(dx * dx + dy * dy) / near.h, near.h)
-            part *= state[i, CONDUCTIVITY] + state[j, CONDUCTIVITY]
-            within += part * (state[j, HEAD] - state[i, HEAD])
+            part = weight[k] * (own + state[j, CONDUCTIVITY])
+            within += part * (state[j, HEAD] - head)
             conductance += part
-        taken, given, more = exchanged(i, state, permeability, near, outer, properties.place)
+        taken, given, more = outside_rate(i, state, permeability, outer, outer_weight)
         whole = properties.unity * properties.density * state[i, VOLUME]
         rate[i, CONTENT] = whole * (within + taken - given)
         rate[i, FROM_WATER] = whole * taken
@@ -143,14 +159,6 @@ def flow_rates(state, permeability, near, outer, properties, rate):
         fastest = max(fastest, properties.unity * (conductance + more) * state[i, SLOPE])
         quickest = max(quickest, abs(rate[i, CONTENT]) / (properties.density * state[i, VOLUME]))
     return fastest, quickest
-
-
-@inline
-def exchanged(i, state, permeability, near, outer, place):
-    """What `outside_rate` gives; nothing without places."""
-    if outer is None:
-        return 0.0, 0.0, 0.0
-    return outside_rate(i, state, permeability, near, outer, place)
 
 
 def unity(kind: int, ratio: float) -> float:
@@ -182,11 +190,13 @@ class Moisture:
     resistance: Resistance | None = None
     content: Floats = field(init=False)
     state: Floats = field(init=False)
+    weight: Floats = field(init=False)  # (m,) and outer_weight (k,): of `pair_weights`, and room for more
 
     def __post_init__(self) -> None:
         count = len(self.grains)
         self.given = self.permeability.copy()
         self.content, self.state = np.zeros((count, 3)), np.zeros((count, 8))
+        self.weight, self.outer_weight = np.zeros(0), np.zeros(0)
         self._stages = [np.zeros((count, 3)) for _ in range(4)]
 
     def place(self, x: Floats, volume: Floats) -> None:
@@ -207,13 +217,24 @@ class Moisture:
         """Pressures and conductivities of a ``content`` (s, 3) kg/m."""
         update_state(content, self.grains, self.permeability, self.retention.numbers, self.properties, self.state)
 
-    def rates(self, near: Neighbours, outer: Outer | None, rate: Floats) -> tuple[float, float]:
+    def weigh(self, near: Neighbours, outer: Outer) -> None:
+        """Take up which pieces of soil and places are near which, where they are now."""
+        if len(self.weight) < len(near.partner):
+            self.weight = np.zeros(len(near.partner) * 3 // 2)
+        if len(self.outer_weight) < len(outer.partner):
+            self.outer_weight = np.zeros(len(outer.partner) * 3 // 2)
+        pair_weights(self.state, near, outer, self.properties.place, self.weight, self.outer_weight)
+
+    def rates(self, near: Neighbours, outer: Outer, rate: Floats) -> tuple[float, float]:
         """Overwrite ``rate`` (s, 3) kg/(m s); returns what `flow_rates` does."""
-        fastest, quickest = flow_rates(self.state, self.permeability, near, outer, self.properties, rate)
+        fastest, quickest = flow_rates(
+            self.state, self.permeability, near, outer, self.weight, self.outer_weight, self.properties, rate
+        )
         return float(fastest), float(quickest)
 
-    def advance(self, seconds: float, near: Neighbours, outer: Outer | None) -> int:
+    def advance(self, seconds: float, near: Neighbours, outer: Outer) -> int:
         """Let water flow for ``seconds``; returns the number of stages that it took."""
+        self.weigh(near, outer)
         left, used = seconds, 0
         while left > 0.0:
             self.update(self.content)
@@ -233,7 +254,7 @@ class Moisture:
         self.update(self.content)
         return used
 
-    def _legendre(self, step: float, stages: int, first: Floats, near: Neighbours, outer: Outer | None) -> None:
+    def _legendre(self, step: float, stages: int, first: Floats, near: Neighbours, outer: Outer) -> None:
         """A ``step`` (s) of so many ``stages``, from the rates ``first``; overwrites ``content``."""
         before, now, rate, _ = self._stages
         weight = 2.0 * step / (stages * (stages + 1.0))

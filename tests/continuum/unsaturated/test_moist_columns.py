@@ -5,7 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.unsaturated.richards import CONTENT, FROM_WATER, PRESSURE, TO_AIR, flow_rates, update_state
+from continuum_sph.unsaturated.richards import (
+    CONTENT,
+    FROM_WATER,
+    PRESSURE,
+    TO_AIR,
+    flow_rates,
+    pair_weights,
+    update_state,
+)
 from continuum_sph.validation.unsaturated import columns
 from continuum_sph.validation.unsaturated.columns import DRAINING, RISING, SINKING, Soaking, error, held
 from porescale.common.compiled.jit import set_threads
@@ -76,8 +84,13 @@ def test_the_compiled_flow_is_the_plain_one():
     water, outer = run.water, run.outside.outer
     compiled, plain = np.zeros((len(water.grains), 3)), np.zeros((len(water.grains), 3))
     state = water.state.copy()
+    water.weigh(run.near, outer)
     one = water.rates(run.near, outer, compiled)
-    two = flow_rates.py_func(water.state, water.permeability, run.near, outer, water.properties, plain)
+    weights = water.weight.copy(), water.outer_weight.copy()
+    pair_weights.py_func(water.state, run.near, outer, water.properties.place, water.weight, water.outer_weight)
+    np.testing.assert_allclose(weights[0], water.weight, rtol=1e-12)
+    np.testing.assert_allclose(weights[1], water.outer_weight, rtol=1e-12)
+    two = flow_rates.py_func(water.state, water.permeability, run.near, outer, *weights, water.properties, plain)
     np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(one, two, rtol=1e-12)
     update_state.py_func(
@@ -93,6 +106,7 @@ def test_flow_between_pieces_is_opposite():
     water.fill(-2000.0 * (1.0 + rng.random(len(water.grains))))
     water.update(water.content)
     rate = np.zeros((len(water.grains), 3))
+    water.weigh(run.near, run.outside.outer)
     water.rates(run.near, run.outside.outer, rate)
     assert abs(rate[:, CONTENT].sum()) < 1e-12 * np.abs(rate[:, CONTENT]).sum()
 
