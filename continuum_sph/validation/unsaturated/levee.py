@@ -120,7 +120,7 @@ class Levee(FullLevee):
         return least(self.slope(flow), centres, tuple(depths), shallow=0.1 * self.height)
 
 
-STANDARD = Levee(end=3.7)
+STANDARD = Levee(end=4.1)
 KEPT = Levee(high=0.3, end=2.5)
 """The river kept low, for as long as it takes the other to fail."""
 SLID = 0.05  # of the height, that the toe slides after its factor is 1
