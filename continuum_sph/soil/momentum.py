@@ -22,6 +22,10 @@ also between materials; spacing² stands for the volume in the sum, as V_i V_j w
 strain leaves nothing to exchange, so dilatancy is what it was.  All particles stand for spacing² at the start, whatever
 they weigh (`SoilFlow` refuses others).  By how much soil has come apart it keeps for itself: a lone grain at the tip of
 a tongue that gave volume away is the denser, up to a fifth, once it has closed, until it has its neighbours' volume.
+
+Mean p of the surroundings less p, for `plasticity`: -Σ V_j (p_j - p_i) (1/r) W' / 2π W(0), with partners in walls.  The
+integral of -(1/r) W' is 2π W(0), so inside soil it is the mean of the partners less p, and zero for linear p; near a
+surface, where half of the partners are missing, it counts half.  What one particle gains its partner loses.
 """
 
 from typing import Any, NamedTuple
@@ -47,9 +51,9 @@ from continuum_sph.soil.state import (
     X,
     Y,
 )
-from continuum_sph.soil.stress import GROWN, XX, XY, YY, ZZ
+from continuum_sph.soil.stress import EXCESS, GROWN, XX, XY, YY, ZZ
 from continuum_sph.water.bundles import image, inverse_period, nearest_image
-from continuum_sph.water.smoothing import slope_scale, slope_shape
+from continuum_sph.water.smoothing import kernel_kind, kernel_value, slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_four, gather_rows, maximum, minimum, reduce_add, sqrt, zeros
 
@@ -72,19 +76,20 @@ class Choices(NamedTuple):
 
 @parallel_kernel
 def accelerate(soil, record, facing, force, stress, acceleration, spread, drift, near, choices):
-    """Overwrites ``acceleration`` (soil, 2) m/s², ``spread`` (soil, 5) Pa/s and m²/s, ``drift`` (soil, 2) m/s.
+    """Overwrites ``acceleration`` (soil, 2) m/s², ``spread`` (soil, 6) Pa/s, m²/s and Pa, ``drift`` (soil, 2) m/s.
 
     record, facing: see `state.Soil`;  force (soil, 2) N/m of other layers;  stress (n, 4) Pa;  near: see
     `water.bundles`;  choices: see `Choices`.
     """
     for i in prange(soil):
-        (ax, ay), diffused, grown, (ux, uy) = soil_forces(i, record, stress, near, choices)
-        ax, ay, ux, uy = with_wall_forces(i, record, facing, near, choices, ax, ay, ux, uy)
+        pushed, diffused, grown, excess = soil_forces(i, record, stress, near, choices)
+        ax, ay, ux, uy, excess = with_wall_forces(i, record, facing, stress, near, choices, pushed, excess)
         spread[i, XX] = diffused[0]
         spread[i, YY] = diffused[1]
         spread[i, XY] = diffused[2]
         spread[i, ZZ] = diffused[3]
         spread[i, GROWN] = choices.spacing * choices.spacing * grown
+        spread[i, EXCESS] = excess / (2.0 * np.pi * kernel_value(kernel_kind(near.kind), 0.0, near.h))
         drift[i, 0] = 0.5 * choices.spacing_recovery * ux
         drift[i, 1] = 0.5 * choices.spacing_recovery * uy
         acceleration[i, 0] = ax + choices.gx + force[i, 0] / record[i, MASS]
@@ -93,8 +98,8 @@ def accelerate(soil, record, facing, force, stress, acceleration, spread, drift,
 
 @inline
 def soil_forces(i, record, stress, near, choices):
-    """Sums over soil partners of particle i: (acceleration (x, y) m/s²;  diffusion of stress, Pa/s: xx, yy, xy, zz;
-    that of volume over spacing², 1/s;  sums of spacing recovery (x, y) m/s over A/2).
+    """Sums over soil partners of particle i: (acceleration m/s² and spacing recovery m/s over A/2, (x, y) each;
+    diffusion of stress, Pa/s: xx, yy, xy, zz;  that of volume over spacing², 1/s;  Σ -V_j (p_j - p_i) (1/r) W', Pa/m²).
 
     The arguments: of `accelerate`.
     """
@@ -113,7 +118,7 @@ def soil_forces(i, record, stress, near, choices):
     gxx, gxy, gyx, gyy = record[i, GXX], record[i, GXY], record[i, GYX], record[i, GYY]
     xx, yy, xy, zz = stress[i, XX], stress[i, YY], stress[i, XY], stress[i, ZZ]
     bx, by, wx, wy, grown = zeros(), zeros(), zeros(), zeros(), zeros()
-    rxx, ryy, rxy, rzz = zeros(), zeros(), zeros(), zeros()
+    rxx, ryy, rxy, rzz, around = zeros(), zeros(), zeros(), zeros(), zeros()
     k, end = near.start[i], near.split[i]
     while k < end:  # a particle stands for the missing end of its row: it does nothing to itself
         xj, yj, vxj, vyj, volume, mass, sound_j, shear_rate_j = gather_rows(record, near.partner, k, end, i)
@@ -131,6 +136,7 @@ def soil_forces(i, record, stress, near, choices):
         stress_term = own * part
         bx += damping * damping_term * dx - stress_term * ((txx + txx_j) * dx + (txy + txy_j) * dy)
         by += damping * damping_term * dy - stress_term * ((tyx + tyx_j) * dx + (tyy + tyy_j) * dy)
+        around -= part * ((xx_j - xx) + (yy_j - yy))
         rate = shear_rate + shear_rate_j
         diffusing = by_strain * rate + by_sound
         part = diffusing * part
@@ -143,7 +149,8 @@ def soil_forces(i, record, stress, near, choices):
         wx += close * dx
         wy += close * dy
     diffused = (reduce_add(rxx), reduce_add(ryy), reduce_add(rxy), reduce_add(rzz))
-    return (reduce_add(bx), reduce_add(by)), diffused, reduce_add(grown), (reduce_add(wx), reduce_add(wy))
+    pushed = (reduce_add(bx), reduce_add(by), reduce_add(wx), reduce_add(wy))
+    return pushed, diffused, reduce_add(grown), 0.5 * reduce_add(around)
 
 
 @inline
@@ -155,11 +162,12 @@ def undamped(printed):
 
 
 @inline
-def with_wall_forces(i, record, facing, near, choices, ax, ay, ux, uy):
-    """Accelerations and sums of spacing recovery of `soil_forces` with partners in walls before which particle i lies.
-
-    A wall's gradient and sound are those of the soil before it.
+def with_wall_forces(i, record, facing, stress, near, choices, sums, around):
+    """Accelerations, spacing recovery and mean p of `soil_forces`, ``sums`` and ``around``, with partners in walls
+    before which particle i lies.  A wall's gradient, stress and sound are those of the soil before it.
     """
+    ax, ay, ux, uy = sums
+    own_p = 0.5 * (stress[i, XX] + stress[i, YY])
     kind, h, inverse_h, scale = near.kind, near.h, 1.0 / near.h, slope_scale(near.kind, near.h)
     soft, damping = SOFTENING * h * h, 0.5 * choices.damping * h
     inverse_spacing2 = 1.0 / (choices.spacing * choices.spacing)
@@ -185,7 +193,8 @@ def with_wall_forces(i, record, facing, near, choices, ax, ay, ux, uy):
         tyx, tyy = record[i, TYX] + record[j, TYX], record[i, TYY] + record[j, TYY]
         ax += damping_term * dx - stress_term * (txx * dx + txy * dy)
         ay += damping_term * dy - stress_term * (tyx * dx + tyy * dy)
+        around -= record[j, VOLUME] * slope * (0.5 * (stress[j, XX] + stress[j, YY]) - own_p)
         close = 2.0 * record[i, SHEAR_RATE] * max(0.0, 1.0 - distance2 * inverse_spacing2)
         ux += close * dx
         uy += close * dy
-    return ax, ay, ux, uy
+    return ax, ay, ux, uy, around

@@ -13,6 +13,9 @@ has closed again (Dunatunga & Kamrin, J. Fluid Mech. 779 (2015) 483); hypo-elast
 soon as things approach.  σ_zz changes with p as plane strain has it while nothing flows across the plane: 2ν dp.
 Source: Bui, Fukagawa, Sako & Ohno, Int. J. Numer. Anal. Meth. Geomech. 32 (2008) 1537 (there Drucker-Prager, scaled
 back); Jaumann's rate: eq. 45 of Maeda & Sakai 2004.
+
+The p of the yield criterion alone is the mean of the particle's surroundings, p̄ = p + ``excess`` of `momentum`.  Noise
+in p that yields by itself is cut off on one side, where r > p sin φ: soil weakens, the more the finer it is.
 """
 
 import numpy as np
@@ -33,11 +36,12 @@ from porescale.common.compiled.jit import inline
 
 
 @inline
-def returned(p, r, area, shear, row):
+def returned(p, r, excess, area, shear, row):
     """(p, r, dγ, opened): a trial stress (Pa) brought back to yield, shear strain that did not come back and share of
-    the volume that came apart;  area, shear: B and G, Pa;  row: the material's."""
+    the volume that came apart;  excess: mean p of the surroundings less p, Pa, never below -p where p > 0;
+    area, shear: B and G, Pa;  row: the material's."""
     slope = row[SIN_FRICTION]
-    cohesion = row[COHESION_INTERCEPT]
+    cohesion = row[COHESION_INTERCEPT] + slope * max(excess, -max(p, 0.0))
     dilatancy = row[SIN_DILATANCY]
     tension = row[TENSION]
     new_p = p
@@ -65,11 +69,15 @@ def returned(p, r, area, shear, row):
 
 
 @inline
-def new_stress(xx, yy, xy, zz, gxx, gxy, gyx, gyy, step, opening, row):
-    """(σ_xx, σ_yy, σ_xy, σ_zz, opening, dγ) after ``step`` (s) at the velocity gradient g (1/s);  stresses in Pa.
+def new_stress(stress, excess, gradient, step, opening, row):
+    """(σ_xx, σ_yy, σ_xy, σ_zz, opening, dγ) after ``step`` (s);  stresses in Pa.
 
-    opening: share of the volume by which the element has come apart;  row: the material's line of the table.
+    stress: (σ_xx, σ_yy, σ_xy, σ_zz);  excess: mean p of the surroundings less p, Pa;  gradient of the velocity:
+    (∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y), 1/s;  opening: share of the volume by which the element has come apart;  row: the
+    material's line of the table.
     """
+    xx, yy, xy, zz = stress
+    gxx, gxy, gyx, gyy = gradient
     p = 0.5 * (xx + yy)
     half = 0.25 * (gyx - gxy) * step  # tan θ/2 where the gradient is that of the middle of a rigid turn
     turn = 2.0 * half / (1.0 - half * half)  # tan θ
@@ -92,7 +100,7 @@ def new_stress(xx, yy, xy, zz, gxx, gxy, gyx, gyy, step, opening, row):
     flow = 0.0
     if row[YIELDS] > 0.0:
         r = np.sqrt(s * s + t * t)
-        new_p, new_r, flow, opened = returned(new_p, r, area, shear, row)
+        new_p, new_r, flow, opened = returned(new_p, r, excess, area, shear, row)
         if new_r < r:
             s *= new_r / r
             t *= new_r / r

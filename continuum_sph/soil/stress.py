@@ -18,8 +18,9 @@ from continuum_sph.soil.plasticity import new_stress
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, SHEAR_RATE, SOUND_OVER_DENSITY, TXX, TXY, TYX, TYY, VOLUME
 from porescale.common.compiled.jit import parallel_kernel, prange
 
-XX, YY, XY, ZZ, GROWN = range(5)
-"""Columns of a stress, Pa, compression positive; and, of what diffuses, that of the volume, m²/s."""
+XX, YY, XY, ZZ, GROWN, EXCESS = range(6)
+"""Columns of a stress, Pa, compression positive; of what diffuses, that of the volume, m²/s; and the mean p of the
+surroundings less p, Pa."""
 
 
 class Straining(NamedTuple):
@@ -37,8 +38,9 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``separation_strain``, ``plastic_shear``
     (soil,) and in ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
 
-    material, table, matrix: see `state.Soil`;  spread (soil, 5) Pa/s and m²/s: diffusion of stress and volume of
-    `accelerate`;  straining: see `Straining`.  Returns the largest c², m²/s²; a maximum is exact in any order.
+    material, table, matrix: see `state.Soil`;  spread (soil, 6) Pa/s, m²/s and Pa: diffusion of stress and volume,
+    and mean p of the surroundings less p, of `accelerate`;  straining: see `Straining`.  Returns the largest c², m²/s²;
+    a maximum is exact in any order.
     """
     step, spreading, spin, most = straining.step, straining.spreading, straining.spin, straining.most
     max_sound2 = 0.0
@@ -57,9 +59,11 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
         strain_xy = 0.5 * (gxy + gyx)
         turn_xy = 0.5 * spin * (gxy - gyx)
         xx, yy, xy, zz, opened, flow = new_stress(
-            stress[i, XX] + spreading * spread[i, XX], stress[i, YY] + spreading * spread[i, YY],
-            stress[i, XY] + spreading * spread[i, XY], stress[i, ZZ] + spreading * spread[i, ZZ],
-            gxx, strain_xy + turn_xy, strain_xy - turn_xy, gyy, step, separation_strain[i], row,
+            (
+                stress[i, XX] + spreading * spread[i, XX], stress[i, YY] + spreading * spread[i, YY],
+                stress[i, XY] + spreading * spread[i, XY], stress[i, ZZ] + spreading * spread[i, ZZ],
+            ),
+            spread[i, EXCESS], (gxx, strain_xy + turn_xy, strain_xy - turn_xy, gyy), step, separation_strain[i], row,
         )  # fmt: skip
         shrunk = (1.0 - step * axx) * (1.0 - step * ayy) - step * step * axy * ayx
         density[i] *= shrunk * record[i, VOLUME] / (record[i, VOLUME] + spreading * spread[i, GROWN])

@@ -32,10 +32,8 @@ class Element:
     def after(self, across: float, upright: float, shear: float = 0.0, turn: float = 0.0) -> tuple[float, ...]:
         """σ_xx, σ_yy, σ_xy, σ_zz (Pa), opening and plastic shear of a further strain (tensor components, compression
         positive) and turn (rad)."""
-        xx, yy, xy, zz = self.stress
-        found: tuple[float, ...] = new_stress(
-            xx, yy, xy, zz, -across, -shear - turn, -shear + turn, -upright, 1.0, self.opening, self.row
-        )
+        gradient = -across, -shear - turn, -shear + turn, -upright
+        found: tuple[float, ...] = new_stress(self.stress, 0.0, gradient, 1.0, self.opening, self.row)
         return found
 
     def take(self, across: float, upright: float, shear: float = 0.0, turn: float = 0.0) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from continuum_sph.benchmarks.minimal_soil import Ground, soil_step
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
-from continuum_sph.soil.stress import XX, XY, YY
+from continuum_sph.soil.stress import EXCESS, XX, XY, YY
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.neighbors import PairList, square_lattice
 
@@ -32,7 +32,10 @@ def stirred(material: Material) -> tuple[SoilFlow, Ground]:
     flow = SoilFlow(soil, law, pairs)
     flow.start()
     plane = soil.stress[:, [XX, XY, XY, YY]].reshape(n, 2, 2)
-    return flow, Ground(soil.x.copy(), soil.v.copy(), soil.acceleration.copy(), soil.mass, soil.density.copy(), plane)
+    return flow, Ground(
+        soil.x.copy(), soil.v.copy(), soil.acceleration.copy(), soil.mass, soil.density.copy(), plane,
+        soil.spread[:, EXCESS].copy(),
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("material", [SAND, replace(SAND, yields=False)], ids=["yields", "elastic"])

@@ -135,7 +135,7 @@ def test_stress_brought_back_lies_on_yield_or_where_it_was(p, r, soil):
     material = Material(1e6, 1600.0, **soil)
     row = material.row()
     area, shear = material.area_modulus * 1e6, material.shear_modulus * 1e6
-    q, s, flow, opened = returned.py_func(p, r, area, shear, row)
+    q, s, flow, opened = returned.py_func(p, r, 0.0, area, shear, row)
     slack = 1e-9 * (abs(p) + r)
     assert s <= material.sin_friction * q + material.cohesion_intercept + slack
     assert q - s >= -material.tension - slack
