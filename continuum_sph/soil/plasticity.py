@@ -73,8 +73,8 @@ def new_stress(stress, excess, gradient, step, opening, row):
     """(σ_xx, σ_yy, σ_xy, σ_zz, opening, dγ) after ``step`` (s);  stresses in Pa.
 
     stress: (σ_xx, σ_yy, σ_xy, σ_zz);  excess: mean p of the surroundings less p, Pa;  gradient of the velocity:
-    (∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y), 1/s;  opening: share of the volume by which the element has come apart;  row: the
-    material's line of the table.
+    (∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y), 1/s;  opening: share of the volume by which the element has come apart;
+    row: the material's line of the table.
     """
     xx, yy, xy, zz = stress
     gxx, gxy, gyx, gyy = gradient

@@ -129,39 +129,14 @@ def layer(
     return in_tank(x, stress, (width, 2.0), spacing, material, gravity=GRAVITY, tilt=tilt, sides="none")
 
 
-def sliding(degrees: float, rows: int = 20, friction: float = TAN_PHI) -> tuple[float, float]:
-    """(mean acceleration between 0.5 s and 1 s, m/s², of such a layer; the one that `TAN_PHI` gives it)."""
-    flow, tilt = layer(degrees, rows, friction), math.radians(degrees)
-    n, marks = flow.soil.soil, []
-    for time in (0.5, 1.0):
-        run_until(flow, time)
-        marks.append((flow.time, float(flow.soil.v[:n, 0].mean())))
-    (t0, v0), (t1, v1) = marks
-    return (v1 - v0) / (t1 - t0), GRAVITY * (math.sin(tilt) - TAN_PHI * math.cos(tilt))
-
-
-@VALIDATIONS.row(
-    "continuum.soil_slides_beyond_its_limit",
-    source="exact: an endless layer without dilatancy shears where τ = σ_n sin φ, so at atan 0.5 = 26.6°, not 30° "
-    "(Davis 1968), and goes with g (sin β - 0.5 cos β); slope of 28°",
-    because="half of the row at the floor, of 20, is held by it and stays",
-    tolerance=0.5 / 20,
-    slow=True,
-)
-def sliding_row() -> Measured:
-    """Acceleration of the layer over the exact one."""
-    found, exact = sliding(28.0)
-    return Measured.relative(exact, found)
-
-
 @functools.cache
-def strewn_friction(rows: int, degrees: float = 30.0, *, own: bool = False) -> float:
-    """Friction that slows a sliding layer whose particles are strewn: (g sin β - a)/(g cos β), a (m/s²) its mean
-    acceleration between 0.75 s and 1.5 s.
+def strewn_friction(rows: int, *, friction: float = TAN_PHI, own: bool = False) -> float:
+    """Friction that slows a layer of strewn particles on 30°: (g sin β - a)/(g cos β), a (m/s²) its mean acceleration
+    between 0.75 s and 1.5 s.
 
-    own : each particle yields by its own p, not by the mean of its surroundings.
+    friction : sin φ of the soil;  own : each particle yields by its own p, not by the mean of its surroundings.
     """
-    flow, tilt, marks = layer(degrees, rows, columns=16, strewn=0.2), math.radians(degrees), []
+    flow, tilt, marks = layer(30.0, rows, friction, columns=16, strewn=0.2), math.radians(30.0), []
     n = flow.soil.soil
     for time in (0.75, 1.5):
         while flow.time < time:
@@ -179,10 +154,11 @@ HALF_DEGREE = math.radians(0.5) * (1.0 + TAN_PHI**2) / TAN_PHI
 
 @VALIDATIONS.row(
     "continuum.soil_friction_at_any_spacing",
-    source="exact: as for soil_slides_beyond_its_limit, from a strewn lattice of 20, 40 and 80 rows on 30°",
-    because="half a degree of slope, to which slopes are read from pictures; what is left grows with the number of rows: "
-    "without dilatancy the law lets columns turn like books on a shelf and so be weaker, down to "
-    "sin φ cos φ/(1 + sin² φ) = 0.346 (de Josselin de Jong, Géotechnique 21 (1971) 155), and fine soil can",
+    source="exact: an endless layer without dilatancy shears where τ = σ_n sin φ, so at atan 0.5 = 26.6°, not 30° "
+    "(Davis 1968), and goes with g (sin β - 0.5 cos β); from a strewn lattice of 20, 40 and 80 rows, slope of 30°",
+    because="half a degree of slope, to which slopes are read from pictures.  What is left grows with the rows: "
+    "columns that turn like books on a shelf are weaker (de Josselin de Jong, Géotechnique 21 (1971) 155: down to "
+    "sin φ cos φ/(1 + sin² φ) = 0.35), and the finer the soil, the easier they form",
     tolerance=HALF_DEGREE,
     slow=True,
 )
