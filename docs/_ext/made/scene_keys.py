@@ -199,7 +199,7 @@ def page(package: str) -> str:
             shown = f"[`{heading}`](#{writer.anchor(name)})"
         else:
             shown = code(name)
-        meaning, unit = about(it)
+        meaning, unit = about(next((one for one in tables(it) if one.get("description")), it))
         first = re.split(r"(?<=[.;]) ", meaning)[0].rstrip(";")
         rows.append((shown, escaped(unit), "required" if name in must else default(it, False), escaped(first)))
     writer.parts.append(table(("section or key", "unit", "default", "what it is"), rows))
