@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from continuum_sph.program import PROGRAM as CONTINUUM
-from porescale.program import PROGRAM as GRAINS
+from porescale.common.evidence.register import discovered
 from tests.architecture.sources import ROOT
 
 PAGES = sorted((ROOT / "docs" / "theory").glob("*.md"))
@@ -78,7 +77,8 @@ def rows_named(page: str) -> list[str]:
 @cache
 def rows() -> set[str]:
     """Names of all rows that ``verify`` has."""
-    return {row.name for program in (GRAINS, CONTINUUM) for row in program.validations()}
+    found = [discovered(f"{package}.validation", "VALIDATIONS")() for package in ("porescale", "continuum_sph")]
+    return {row.name for each in found for row in each}
 
 
 def missing_links(page: Path, text: str) -> list[str]:
