@@ -12,8 +12,8 @@ from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.collision.trt import antisymmetric_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
-from porescale.validation.lbm.channels import run
 from porescale.validation.coupling.setups import NO_DISCS
+from porescale.validation.lbm.channels import run
 
 HEIGHT, SOLID = 8, 2
 """Rows of the box, and full rows of solid at its bottom."""
