@@ -49,7 +49,7 @@ def run(
     overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
     quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
 ) -> int:
-    """Run a deck: run folder, energy.dat, f-d_curve.dat and new_in_*.dat for the run that goes on from its end."""
+    """Run a deck: run folder, the files of DEMseg, and new_in_*.dat for the run that goes on from its end."""
     from porescale.common.record.drive import check_resume
     from porescale.demseg.build import Options
     from porescale.demseg.deck import read_deck
@@ -124,10 +124,14 @@ def show(folder: Path) -> list[Path]:
     from porescale.common.pictures.film import film
     from porescale.common.pictures.picture import pictures
     from porescale.common.record.open_run import open_run
+    from porescale.output.deck_pictures import write_deck_pictures
     from porescale.output.show import look_of
 
-    look = look_of(open_run(folder))
-    return [*pictures(folder, look), film(folder, look)]
+    run = open_run(folder)
+    look = look_of(run)
+    assert look.view
+    own = write_deck_pictures(run, folder, look.view) if "contacts" in run.clouds else []
+    return [*pictures(folder, look), film(folder, look), *own]
 
 
 def convert(
