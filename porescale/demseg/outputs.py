@@ -55,7 +55,7 @@ def contact_cloud(built: Built) -> Cloud:
 
     def summed(values: Floats) -> Floats:
         """Sum over the rows of one contact."""
-        return np.asarray(np.bincount(same, values, len(rows)))
+        return np.bincount(same, values, len(rows)).astype(float)  # whole numbers where there is none
 
     flat = {name: np.zeros((len(rows), 3)) for name in ("force", "start", "branch")}
     for k in range(2):

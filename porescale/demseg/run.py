@@ -133,13 +133,13 @@ class DeckRun:
     def snapshot(self) -> Snapshot:
         """Discs, and the ends of segments, with what they make: lines and polygons."""
         d, shot = self.grains.discs, Snapshot(self.time, self.step)
-        split, body = sum(len(body.discs) for body in self.deck.bodies), bodies_of(self.built)
+        split, numbers = sum(len(body.discs) for body in self.deck.bodies), bodies_of(self.built)
         for name, own in (("grains", slice(0, split)), ("ends", slice(split, d.count))):
             if len(d.radius[own]):
                 flat = np.zeros((len(d.radius[own]), 3))
                 flat[:, :2] = d.velocity[own]
-                data = {"radius": d.radius[own], "angle": d.angle[own], "velocity": flat, "spin": d.spin[own]}
-                data["body"] = body[own]
+                turned = {"angle": d.angle[own], "velocity": flat, "spin": d.spin[own]}
+                data = {"radius": d.radius[own], **turned, "body": numbers[own]}
                 shot.clouds[name] = Cloud(d.position[own], data)
         if self.built.frames:
             lines, polygons = cells_of(self.built.frames)

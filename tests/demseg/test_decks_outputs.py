@@ -1,4 +1,4 @@
-"""Files of a deck beside energy.dat: places, contacts, speeds, emissions and breaks, and pictures of forces and numbers."""
+"""Files of a deck beside energy.dat: places, contacts, speeds, emissions, breaks; pictures of forces and numbers."""
 
 import csv
 
@@ -29,8 +29,11 @@ def rows(path):
 def run(folder, out, steps, every):
     """Drive the deck into ``out`` with all its files, without film; the model at its end."""
     model = read(folder, Options())
-    drive(model, out, steps * model.deck.dt, snapshot_interval=every * model.deck.dt,
-          series_interval=every * model.deck.dt, card={"name": "deck", "scene": {}}, quiet=True, after=model.write)  # fmt: skip
+    each = every * model.deck.dt
+    drive(
+        model, out, steps * model.deck.dt, snapshot_interval=each, series_interval=each,
+        card={"name": "deck", "scene": {}}, quiet=True, after=model.write,
+    )  # fmt: skip
     return model
 
 
@@ -102,7 +105,7 @@ def test_a_chain_that_breaks_counts_its_emissions_and_lists_its_breaks(tmp_path)
         lost = list(csv.DictReader(file))
     assert len(lost) == counts[-1, 3]
     for row in lost:
-        step = int(round(float(row["time"]) / 1e-5))
+        step = round(float(row["time"]) / 1e-5)
         before = counts[counts[:, 0] < step, 3].max()
         after = counts[counts[:, 0] >= step, 3].min()
         assert before < after  # it is counted in the row that its time lies in
@@ -112,6 +115,17 @@ def test_a_chain_that_breaks_counts_its_emissions_and_lists_its_breaks(tmp_path)
     first = rows(tmp_path / "out" / "cont.dat")[:3]
     assert first[0] == [0, 0.0, 2]
     assert np.abs(np.array(first[1:])[:, 4:]).max() < 1e-5
+
+
+def test_a_disc_that_touches_nothing_at_first_leaves_its_contacts_all_the_same(tmp_path):
+    low = decks.DISC.replace("0.0d0 5.0d0 0.0d0", "0.0d0 2.001d0 0.0d0").replace(
+        "0.0d0 0.0d0 0.0d0\n1 2", "0 -80 0\n1 2"
+    )
+    run(decks.write(tmp_path / "deck", low), tmp_path / "out", 6, 2)
+    found = rows(tmp_path / "out" / "cont2.dat")
+    assert found[0] == [0, 0.0, 0]  # 0.001 above the floor, 0.004 a step
+    assert found[1][2] == 1
+    assert len(open_run(tmp_path / "out").snapshot(0, cells=()).clouds["contacts"].position) == 0
 
 
 @pytest.mark.slow
