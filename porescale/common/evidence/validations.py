@@ -63,6 +63,7 @@ class Row:
     because: str
     seconds: float
     passed: bool
+    topic: str = ""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; numbers that are not finite become null."""
@@ -83,6 +84,13 @@ class Validation:
     slow: bool
     measure: Callable[[], Measured]
 
+    @property
+    def topic(self) -> str:
+        """The folder of ``validation`` that it stands in, else the first part of its name."""
+        _, inside, path = str(self.measure.__module__).partition(".validation.")
+        folder, deeper, _ = path.partition(".")
+        return folder if inside and deeper else self.name.partition(".")[0]
+
     def run(self) -> Row:
         """Measure once.  An exception counts as failed, with its text in ``because``; nan never passes."""
         start = time.perf_counter()
@@ -102,7 +110,9 @@ class Validation:
         seconds = time.perf_counter() - start
         passed = error <= self.tolerance
         row_error = None if math.isnan(error) else error
-        return Row(self.name, self.source, reference, measured, row_error, self.tolerance, because, seconds, passed)
+        return Row(
+            self.name, self.source, reference, measured, row_error, self.tolerance, because, seconds, passed, self.topic
+        )  # fmt: skip
 
 
 class Validations(Register[Validation]):
