@@ -31,7 +31,7 @@ def page(name: str) -> str:
 
 README, COMMANDS = page("README.md"), page("docs/commands.md")
 TOPICS = sorted((ROOT / "docs" / "evidence").glob("*.md"))
-EVIDENCE = "\n".join(path.read_text(encoding="utf-8") for path in TOPICS)
+EVIDENCE = "\n".join(path.read_text(encoding="utf-8") for path in TOPICS if path.stem != "trust")
 PAGES = (
     "README.md", "CONTRIBUTING.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md"))),
     *(f"docs/evidence/{path.name}" for path in TOPICS),
@@ -47,13 +47,14 @@ FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 def behind(text: str, known: Iterable[Validation]) -> list[str]:
     """What the tables of validations lack, have too much or state otherwise: names, topics, sources, tolerances."""
     known = list(known)
-    lines, stands = {}, {}
+    lines, stands, seen = {}, {}, list[str]()
     for topic in re.findall(r"<!-- (\w+) verify -->", text):
         block = WRITER["block"](text, f"{topic} verify")
         lines |= block
+        seen += [line.split()[1] for line in WRITER["inside"](text, f"{topic} verify") if line.startswith("| ")]
         stands |= {name: topic for name in block if name != "validation"}
     found = [name for name, _ in sorted(stands.items() ^ {(one.name, one.topic) for one in known})]
-    found += [f"{name}: twice" for name in sorted(stands) if text.count(f"\n| {name} ") > 1]
+    found += [f"{name}: twice" for name in sorted(stands) if seen.count(name) > 1]
     for one in known if not found else ():
         start, end = WRITER["markdown_row"](["", one.source])[3:-1], f"| {number(one.tolerance)} |"
         if start not in lines[one.name] or end not in lines[one.name][-60:]:

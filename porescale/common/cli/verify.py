@@ -14,7 +14,7 @@ from porescale.common.cli.options import Json, List, Threads, print_json, say, u
 from porescale.common.cli.package import Package
 
 if TYPE_CHECKING:
-    from porescale.common.evidence.validations import Row
+    from porescale.common.evidence.validations import Row, Validation
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -45,7 +45,7 @@ def command(package: Package) -> Callable[..., int]:
             verdict = "pass" if rows[-1].passed else "FAIL"
             say(f"{verdict} {item.name} ({rows[-1].seconds:.1f} s)")
         if out is not None:
-            _keep(output_folder(out), [item.name for item in register], rows)
+            _keep(output_folder(out), list(register), rows)
         failed = sum(not row.passed for row in rows)
         if json:
             print_json(row.as_dict() for row in rows)
@@ -63,12 +63,13 @@ def command(package: Package) -> Callable[..., int]:
     return verify
 
 
-def _keep(folder: Path, order: Sequence[str], rows: Sequence[Row]) -> None:
-    """Put rows into the files in ``folder`` beside those that other runs left, in the ``order`` of the register."""
+def _keep(folder: Path, register: Sequence[Validation], rows: Sequence[Row]) -> None:
+    """Put rows into the files in ``folder`` beside those that other runs left, in the order of the register."""
     from porescale.common.evidence import validation_files as files
     from porescale.common.record.card import commit
 
     known, source = files.stored(folder / f"{files.NAME}.json"), commit()
     mark = {"date": datetime.now(UTC).date().isoformat(), "commit": source["hash"][:8] if source else ""}
-    known |= {row.name: row.as_dict() | mark for row in rows}
-    files.write(folder, [known[name] for name in order if name in known])
+    topics = {item.name: {"topic": item.topic} for item in register}
+    known |= {row.name: row.as_dict() | topics[row.name] | mark for row in rows}
+    files.write(folder, [known[name] for name in topics if name in known])

@@ -63,7 +63,6 @@ class Row:
     because: str
     seconds: float
     passed: bool
-    topic: str = ""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; numbers that are not finite become null."""
@@ -110,9 +109,7 @@ class Validation:
         seconds = time.perf_counter() - start
         passed = error <= self.tolerance
         row_error = None if math.isnan(error) else error
-        return Row(
-            self.name, self.source, reference, measured, row_error, self.tolerance, because, seconds, passed, self.topic
-        )  # fmt: skip
+        return Row(self.name, self.source, reference, measured, row_error, self.tolerance, because, seconds, passed)
 
 
 class Validations(Register[Validation]):
