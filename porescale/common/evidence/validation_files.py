@@ -1,8 +1,8 @@
 """The files of validations: rows as JSON, and for each topic a table and a figure of error over tolerance.
 
-A stored row is a `Row` as JSON keeps it with its ``topic``, and ``date`` and ``commit`` of its run.  Where ``reference``
-and ``measured`` keep the first numbers of a list only, ``of`` is how many there are; where they are rounded, ``digits`` is
-to how many.
+A stored row is a `Row` as JSON keeps it with its ``topic``, and ``date`` and ``commit`` of its run.  Where lists of
+``reference`` and ``measured`` keep the first numbers only, ``of`` is how many there are; where they are rounded,
+``digits`` is to how many.
 """
 
 from __future__ import annotations
