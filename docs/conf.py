@@ -28,12 +28,15 @@ extensions = [
     "docs._ext.mathml",
     "docs._ext.docstring",
     "docs._ext.folders",
+    "docs._ext.made",
 ]
 
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # pages on a repository begin at level 1 and skip to what they need
 nitpicky = True
+nitpick_ignore_regex = [("py:.*", ".*")]  # types in signatures are numpy's and Python's, which are not described here
+html_show_copyright = False
 
 html_theme = "furo"
 html_title = f"porescale {VERSION}"
