@@ -7,9 +7,9 @@ s^2 + 4 h s - 4 < 0, so dt_cr = 2 sqrt(m/k) (sqrt(1 + h^2) - h).
 A bounce without dashpot: with x the overlap of the last step before contact (< 0) and of all those in it, the recursion
 keeps I = (x1 - x0)^2 + a x0 x1, a = s^2.  It begins with x0 <= 0 < x1 and ends with y1 > 0 >= y2, where the speeds are
 v dt = x1 - x0 and v' dt = y1 - y2, so v'^2 - v^2 = a (x0 x1 - y1 y2)/dt^2: up to a/4 of v^2 goes, or of v'^2
-comes, as the moment of touch falls.  Contacts whose phase advances by theta = 2 asin(s/2) = pi/N a step have y1 = -x0, y2 = -x1: nothing
-comes or goes, at any moment.  dt_cr/2 is such a step, N = 3.  At theta = (1 + e) pi/N the y are off by pi e A at the
-most, A = v dt/sin(theta) (cos(theta/2) of it at least in a step), so the share by a pi e (|y1| + |y2|) A/(v dt)^2 =
+comes, as the moment of touch falls.  Contacts whose phase advances by theta = 2 asin(s/2) = pi/N a step have y1 = -x0
+and y2 = -x1: nothing comes or goes, at any moment.  dt_cr/2 is such a step, N = 3.  At theta = (1 + e) pi/N the y are
+off by pi e A at the most, A = v dt/sin(theta) or less, so the share by a pi e (|y1| + |y2|) A/(v dt)^2 =
 a pi e/sin(theta), to first order in e.
 """
 

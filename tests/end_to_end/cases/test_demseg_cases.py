@@ -30,8 +30,8 @@ def test_a_deck_of_the_tutorial_gives_what_its_case_expects(name):
 
 
 def test_at_half_the_critical_step_energies_do_not_add_up():
-    # The twin that must fail: the budget of a contact of three steps, dt_cr/2, does not close (test_step_of_the_tutorial
-    # has why the disc bounces on all the same).
+    # The twin that must fail: the budget of a contact of three steps, dt_cr/2, does not close.  Why the disc bounces on
+    # all the same: tests/demseg/test_step_of_the_tutorial.py.
     folder = CASES / "demseg_disc"
     deck = read_deck(folder)
     coarse = math.sqrt(math.pi * 4.0 * 2.5 / 1e8)
