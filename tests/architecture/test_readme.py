@@ -169,12 +169,15 @@ def test_links_lead_somewhere() -> None:
 PATH = re.compile(r"(?<![\w/.-])(?:porescale|continuum_sph|cases|docs|tests|\.ci)/[\w./-]*\w")
 MODULE = re.compile(r"`((?:porescale|continuum_sph|tests)(?:\.[a-z_0-9]+)+)")
 PLACEHOLDER = re.compile(r"[A-Z]{3,}")
+WRITTEN = re.compile(r"^<!-- file: (\S+) -->", re.MULTILINE)
+"""A file that the page itself shows, and that its code writes: tests/manual/snippets.py."""
 
 
 def missing_files(text: str) -> list[str]:
     """Files and modules that a text names and the project does not have, but for links; NAME stands for any."""
     paths = [path for path in PATH.findall(LINK.sub("", text)) if not PLACEHOLDER.search(path)]
-    found = [path for path in paths if not (ROOT / path).exists()]
+    own = [place for path in map(Path, WRITTEN.findall(text)) for place in (path, *path.parents)]
+    found = [path for path in paths if not (ROOT / path).exists() and Path(path) not in own]
     for name in MODULE.findall(text):
         module = ROOT / name.replace(".", "/")
         places = (module, module.with_suffix(".py"), module.parent.with_suffix(".py"))  # the last: a name in a module
@@ -196,6 +199,8 @@ def test_a_file_that_is_gone_is_found() -> None:
         "porescale.lbm.gone",
     ]
     assert missing_files("`porescale.lbm.fluid.Fluid`") == []
+    shown = "<!-- file: cases/gone/scene.toml -->\nsee cases/gone and cases/gone/README.md"
+    assert missing_files(shown) == ["cases/gone/README.md"]
 
 
 @pytest.mark.parametrize("link", ["cases/none", "cases#none", "#none", "../elsewhere"])
