@@ -210,8 +210,8 @@ def test_a_file_that_is_gone_is_found() -> None:
         "porescale.lbm.gone",
     ]
     assert missing_files("`porescale.lbm.fluid.Fluid`") == []
-    shown = "<!-- file: cases/gone/scene.toml -->\nsee cases/gone and cases/gone/README.md"
-    assert missing_files(shown) == ["cases/gone/README.md"]
+    shown = "<!-- file: cases/gone/scene.toml -->\nsee cases/gone and cases/gone/expected.toml"
+    assert missing_files(shown) == ["cases/gone/expected.toml"]
 
 
 @pytest.mark.parametrize("link", ["cases/none", "cases#none", "#none", "../elsewhere"])
