@@ -138,9 +138,9 @@ def picture(rows: Sequence[Row]) -> bytes:
     for smallest, marker, colour, label in looks:
         mine = [(row.ratio, at) for at, row in enumerate(rows) if (row.beside == SMALLEST) is smallest]
         if mine:
-            ratios, at = zip(*mine, strict=True)
-            axes.hlines(at, 1.0, ratios, color=colour, lw=1.5)
-            axes.plot(ratios, at, marker, color=colour, ms=5, label=label)
+            ratios, places = zip(*mine, strict=True)
+            axes.hlines(places, 1.0, ratios, color=colour, lw=1.5)
+            axes.plot(ratios, places, marker, color=colour, ms=5, label=label)
     for at in range(0, len(rows), 2):
         axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
     axes.axvline(1.0, color="black", lw=1.0)
