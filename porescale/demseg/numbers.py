@@ -7,7 +7,7 @@ value are passed over, as are a byte-order mark and the control character that e
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from porescale.common.core.errors import Fault, InputError
@@ -159,3 +159,8 @@ def real(value: float) -> str:
 def table(rows: Sequence[Sequence[float | int]]) -> str:
     """Lines of numbers: whole ones as such, others as ``real``."""
     return "".join(" ".join(str(v) if isinstance(v, int) else real(v) for v in row) + "\n" for row in rows)
+
+
+def plain(rows: Iterable[Sequence[float | int]]) -> str:
+    """Lines of numbers with an e for the exponent, as plotting programs read them."""
+    return table(list(rows)).replace("d", "e")
