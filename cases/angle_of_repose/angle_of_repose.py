@@ -19,6 +19,8 @@ COUNT, SIDE, TOE, GRAVITY, DT = 582, 80.0, 4.0, 980.0, 5e-5  # discs, cm, cm, cm
 SETTLING, RUNNING = 12_000, 100_000  # steps
 TUTORIAL = math.tan(math.radians(27.0))
 FRICTIONS = (0.1, 0.2, 0.3, TUTORIAL, 0.8, 1.2, 2.0)
+SCATTER = 1.9
+"""Standard deviation of the angle over packings, degrees: that of the last recorded run."""
 FOOT, HEAD = 0.15, 0.85
 """Heights between toe and crest, as shares, between which the slope counts: not the foot, nor the rounded crest."""
 
@@ -72,23 +74,36 @@ def angle(grains: Grains) -> float:
     return -math.degrees(math.atan(float(slope)))
 
 
-def measure(packings: int = 4, frictions: tuple[float, ...] = FRICTIONS) -> tuple[dict[str, float], Figure]:
+def measure(packings: int = 4, frictions: tuple[float, ...] = FRICTIONS) -> tuple[dict[str, float | None], Figure]:
     """Angles over friction with their scatter, that of discs that cannot turn, the energy residual, and the picture."""
     first, finer = heap(), heap(dt=0.5 * DT)
     seeds = range(1, packings + 1)
     found = {mu: np.array([angle(heap(mu, seed, book=False).grains) for seed in seeds]) for mu in frictions}
     stiff = np.array([angle(heap(TUTORIAL, seed, book=False, turning=False).grains) for seed in seeds])
-    numbers = {
+    numbers: dict[str, float | None] = {
         "residual over energy turned over": share(first),
         "the same with half the step": share(finer),
         "order of the residual": math.log2(share(first) / share(finer)),
         "angle": float(found[TUTORIAL].mean()),
         "angle at four times the friction, more": float(found[frictions[-1]].mean() - found[TUTORIAL].mean()),
         "angle at a fifth of the friction, less": float(found[TUTORIAL].mean() - found[frictions[0]].mean()),
-        "scatter of the angle over packings": float(np.mean([angles.std(ddof=1) for angles in found.values()])),
+        "scatter of the angle over packings": scatter(found),
         "angle of discs that cannot turn, more": float(stiff.mean() - found[TUTORIAL].mean()),
     }
     return numbers, draw(first, found, stiff)
+
+
+def scatter(found: dict[float, Floats]) -> float | None:
+    """Mean over frictions of the standard deviation of the angle over packings, degrees; None of one packing."""
+    if len(found[TUTORIAL]) > 1:
+        return float(np.mean([angles.std(ddof=1) for angles in found.values()]))
+    print(f"one packing has no scatter: its angles are worth ± {SCATTER:g}°, the deviation of one over packings")
+    return None
+
+
+def deviation(angles: Floats) -> float:
+    """Of angles over packings, degrees; see scatter."""
+    return float(angles.std(ddof=1)) if len(angles) > 1 else SCATTER
 
 
 def share(made: Heap) -> float:
@@ -116,7 +131,7 @@ def draw(made: Heap, found: dict[float, Floats], stiff: Floats) -> Figure:
         axes[1].plot(friction, angles, ".", color="0.6", label="each packing" if k == 0 else None)
     mean = [float(values.mean()) for values in found.values()]
     axes[1].plot(friction, mean, "o-", color="#8c1c2f", label="mean")
-    axes[1].errorbar([TUTORIAL], [stiff.mean()], [stiff.std(ddof=1)], fmt="s", color="#2a6f97", label="cannot turn")
+    axes[1].errorbar([TUTORIAL], [stiff.mean()], [deviation(stiff)], fmt="s", color="#2a6f97", label="cannot turn")
     fine = np.linspace(0.0, float(friction.max()), 100)
     axes[1].plot(fine, np.degrees(np.arctan(fine)), "k:", lw=1, label="arctan μ")
     axes[1].set(

@@ -31,6 +31,7 @@ def command() -> App:
     app = App(name="demseg", help="Run a deck of DEMseg, Matsushima's program, in its own units, or make it a scene.")
     app.command(run)
     app.command(convert)
+    app.command(volonoi)
     return app
 
 
@@ -48,7 +49,7 @@ def run(
     overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
     quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
 ) -> int:
-    """Run a deck: run folder, energy.dat, f-d_curve.dat and new_in_*.dat for the run that goes on from its end."""
+    """Run a deck: run folder, the files of DEMseg, and new_in_*.dat for the run that goes on from its end."""
     from porescale.common.record.drive import check_resume
     from porescale.demseg.build import Options
     from porescale.demseg.deck import read_deck
@@ -123,10 +124,14 @@ def show(folder: Path) -> list[Path]:
     from porescale.common.pictures.film import film
     from porescale.common.pictures.picture import pictures
     from porescale.common.record.open_run import open_run
+    from porescale.output.deck_pictures import write_deck_pictures
     from porescale.output.show import look_of
 
-    look = look_of(open_run(folder))
-    return [*pictures(folder, look), film(folder, look)]
+    run = open_run(folder)
+    look = look_of(run)
+    assert look.view
+    own = write_deck_pictures(run, folder, look.view) if "contacts" in run.clouds else []
+    return [*pictures(folder, look), film(folder, look), *own]
 
 
 def convert(
@@ -164,6 +169,36 @@ def convert(
     _require_valid_scene(text)
     write_text(file, text)
     print(f"{file}: check it with porescale check {file}")
+    return 0
+
+
+def volonoi(
+    folder: Folder,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="folder of the two files; here if not given")] = None,
+    pressed: Annotated[float, Parameter(help="overlap of neighbours, in the deck's unit of length")] = 0.0,
+    seed: Seed = 0,
+    overwrite: Annotated[bool, Parameter(help="replace the files")] = False,
+) -> int:
+    """Make polygons of a deck's discs, thick apart: in_gm_tri.dat (Delaunay) and in_gm_volo.dat (Voronoi)."""
+    from porescale.common.cli.folders import require_writable
+    from porescale.common.core.atomic import write_text
+    from porescale.demseg.build import with_bodies
+    from porescale.demseg.deck import grains_text, read_deck
+    from porescale.demseg.divide import FILES, divided
+
+    place = out or Path()
+    require_writable(place, "--out")
+    there = [place / name for name in FILES.values() if (place / name).exists()]
+    if there and not overwrite:
+        raise InputError(Fault("--out", str(there[0]), "is there already", repair="name another, or --overwrite it"))
+    deck = with_bodies(read_deck(_deck_folder(folder)), seed)
+    made = {kind: divided(deck, kind, pressed) for kind in FILES}
+    place.mkdir(parents=True, exist_ok=True)
+    for kind, each in made.items():
+        write_text(place / FILES[kind], grains_text(each))
+        print(f"{place / FILES[kind]}: {len(each.bodies)} {kind} of {len(deck.bodies)} discs, thick {each.thick:g}")
     return 0
 
 

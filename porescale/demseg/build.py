@@ -7,8 +7,10 @@ Choices where the DEMseg tutorial (Matsushima) gives nothing, or contradicts its
   in I-3 (thick 0, length 5, density 2.5, force 1e4: x = -2.99982 after 10 steps of 2e-5 and -2.99933 after 20) means a
   mass of 1.25, so a width of 0.1.
 - Mode 0: as many discs as fill the domain to the void ratio when their radii are uniform between the two bounds (582 in
-  I-7, as there), each radius from its own share of the range, at random and without overlap (those of DEMseg overlap
-  and fly apart).
+  I-7, as there), each radius from its own share of the range, evenly spread (packing.py) and without overlap (those of
+  DEMseg overlap and fly apart).
+- Rules "each" and "printed" count every segment for itself, also at the sides of the domain: a corner at which two
+  segments end presses on a side twice (sides.py).
 """
 
 import math
@@ -30,6 +32,8 @@ from porescale.dem.grains import Grains
 from porescale.dem.motion.control import Moved, Pushed
 from porescale.dem.motion.drivers import Clump
 from porescale.demseg.deck import MOVED, Body, Control, Deck, Random
+from porescale.demseg.packing import even_start
+from porescale.demseg.sides import at_sides
 
 ROD = 0.1
 
@@ -74,9 +78,9 @@ def random_discs(deck: Deck, random: Random, seed: int) -> tuple[Body, ...]:
         raise InputError(Fault("void ratio", random.void_ratio, "leaves no room for a disc", file="in_gm.dat"))
     rng = np.random.default_rng(seed)
     radius = small + (large - small) * (np.arange(count) + 0.5) / count
-    rng.shuffle(radius)
+    start, radius = even_start(radius, (x2 - x1, y2 - y1), rng)
     try:
-        where = place((x1, y1), (x2, y2), radii=radius, seed=seed).position
+        where = place((x1, y1), (x2, y2), radii=radius, start=start).position
     except InputError as error:
         raise error.in_file("in_gm.dat (mode 0)") from None
     rows = zip(radius.tolist(), where.tolist(), strict=True)
@@ -137,9 +141,12 @@ def _grains(
     x1, x2, y1, y2 = deck.domain
     law, box = laws(deck, options.release), Box((x1, y1), (x2, y2))
     if frames:
+        own = [np.full(len(frame.corners), frame.material) for frame in frames]
+        if options.rule != "outline":
+            law, own = at_sides(law, frames)
         return framed(
             discs if discs.count else None, frames, law, box, clumps=bound, clump_density=heavy, rule=options.rule,
-            material=material, energy=True,
+            material=material, corner_material=own, energy=True,
         )  # fmt: skip
     grains = Grains(discs, law, box, material=material, energy=True)
     if bound:

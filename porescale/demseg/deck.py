@@ -128,7 +128,8 @@ def _grains(file: Reader) -> Deck:
         if min(ncir, nseg1, nseg2) < 0 or not 0 < ncir + nseg1 + nseg2 <= MOST_BODIES:
             file.done()
         first = (int(ncir), int(ncir + nseg1), int(ncir + nseg1 + nseg2))
-        bodies = tuple(_body(file, k + 1, k < first[0], k >= first[1], len(stuff)) for k in range(first[2]))
+        domain = (x1, x2, y1, y2)
+        bodies = tuple(_body(file, k + 1, k < first[0], k >= first[1], len(stuff), domain) for k in range(first[2]))
     file.done()
     return Deck(dt, (gx, gy), stuff, (x1, x2, y1, y2), thick, bodies, random, NEW, 0, 1, 1, 1)
 
@@ -157,7 +158,7 @@ def _random(file: Reader, stuff: int) -> Random:
     return Random(r1, r2, int(material), void)
 
 
-def _body(file: Reader, number: int, of_discs: bool, long: bool, stuff: int) -> Body:
+def _body(file: Reader, number: int, of_discs: bool, long: bool, stuff: int, domain: Four) -> Body:
     ic, material, count = file.record(("ic", int), ("imat", int), ("nelm", int))
     file.must(ic == number, "ic", ic, f"{number}: bodies are numbered from 1, discs before segments")
     file.must(1 <= material <= stuff, "imat", material, f"1 to {stuff}")
@@ -166,15 +167,25 @@ def _body(file: Reader, number: int, of_discs: bool, long: bool, stuff: int) -> 
     names = ("rad", "xc", "yc", "wc") if of_discs else ("x1", "y1", "x2", "y2")
     elements = []
     for k in range(int(count)):
-        ielm, a, b, c, d = file.record(("ielm", int), *((name, float) for name in names))
+        ielm, a, b, c, d = file.record(("ielm", int), *((name, float) for name in names), rows=2)
         file.must(ielm == k + 1, "ielm", ielm, f"{k + 1}: elements of a body are numbered from 1")
         if of_discs:
             file.must(a > 0.0, "rad", a, "> 0")
+            _inside(file, domain, {"xc": b, "yc": c}, "its sides would throw the disc")
         else:
             file.must((a, b) != (c, d), "x2", c, "an end other than the first")
+            if not long:
+                _inside(file, domain, {"x1": a, "y1": b, "x2": c, "y2": d}, "its sides would throw the segment")
         elements.append((a, b, c, d))
     own = tuple(elements)
     return Body(int(material), (vx, vy, vw), own if of_discs else (), () if of_discs else own, long)
+
+
+def _inside(file: Reader, domain: Four, place: dict[str, float], why: str) -> None:
+    """Note a fault of each coordinate that lies outside of the domain: all that is behind a side is solid."""
+    for name, value in place.items():
+        low, high = domain[:2] if name[0] == "x" else domain[2:]
+        file.must(low <= value <= high or low >= high, name, value, f"{low:g} to {high:g}, inside the domain: {why}")
 
 
 def _boundary(file: Reader, deck: Deck) -> Deck:

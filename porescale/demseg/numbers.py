@@ -1,18 +1,23 @@
-"""Numbers as Fortran's list-directed input takes them: 5.0d-5, 3*0.0, commas, comments, records that run over lines.
+"""Numbers as Fortran's list-directed input takes them: 5.0d-5, 1.0+8, 3*0.0, commas, records that run over lines.
 
-A record begins on a new line, goes on over as many lines as it needs, and ends with its line.  What follows its last
-value there must be a comment: any words, or what comes after ! or #.  Lines without a value are passed over.
+A record begins on a new line, goes on over as many lines as it needs, and ends with its line.  After the first value of
+a line a comment may follow: words that do not begin as a number does, or what comes after ! or #.  Lines without a
+value are passed over, as are a byte-order mark and the control character that ends files of DOS.
 """
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from porescale.common.core.errors import Fault, InputError
 
-REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([edEDqQ][+-]?\d+)?")
+REAL = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[edEDqQ]([+-]?\d+)|([+-]\d+))?")
+"""Mantissa, exponent after a letter, exponent without one."""
 WHOLE = re.compile(r"[+-]?\d+")
+BEGUN = re.compile(r"[-+.\d*]|nan|inf", re.IGNORECASE)
+"""How a word begins that is meant as a number."""
+MARKS = ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"), (b"\xef\xbb\xbf", "utf-8-sig"))
 REPEATED = re.compile(r"(\d+)\*(.+)")
 LONGEST_WHOLE = 18
 """Digits of a whole number: all fit into 64 bits."""
@@ -31,29 +36,54 @@ class Reader:
         self.path = path
         self.line = 0  # of the last record, counted from 1
         self.faults: list[Fault] = []
+        self._over = ""  # of the last record, where it took more lines than it is written on
         self._lines_of: dict[str, int] = {}  # of the values of the last record
         try:
-            self._lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+            given = path.read_bytes()
         except OSError as error:
             raise InputError(Fault(str(path), problem=f"cannot be read ({error.strerror})")) from None
+        encoding = next((name for mark, name in MARKS if given.startswith(mark)), "utf-8")
+        self._lines = given.decode(encoding, errors="replace").rstrip("\x1a").splitlines()
 
-    def record(self, *fields: Field) -> list[float]:
-        """The values of the next record, one a field; whole ones where the field's type is int."""
+    def record(self, *fields: Field, rows: int = 1) -> list[float]:
+        """The values of the next record, one a field; whole ones where the field's type is int.
+
+        rows : lines that it is commonly written on; what is said of later faults names a record that took more.
+        """
         values: list[float] = []
         self._lines_of = {}
         words: list[str] = []
+        shared: list[tuple[int, int]] = []  # line, and how many of the record's values it has
         while len(values) < len(fields):
-            words = self._next_words(fields[len(values)][0])
+            words, before = self._next_words(fields[len(values)][0], fields, shared), len(values)
             while words and len(values) < len(fields):
+                if len(values) > before and not BEGUN.match(words[0]):
+                    words = []  # a comment
+                    break
                 name, kind = fields[len(values)]
                 values += self._values(words.pop(0), name, kind)
                 self._lines_of.setdefault(name, self.line)
+            shared.append((self.line, len(values) - before))
         if len(values) > len(fields) or (words and _number(words[0])):
+            if len(shared) > 1:
+                raise self._short(fields, shared)
             more = words[0] if len(values) == len(fields) else f"{values[-1]:g}"
             raise self._broken(
                 f"after {fields[-1][0]}", more, "one value too many", "the end of the line, or a comment"
             )
+        line, count = shared[0]
+        names = ", ".join(name for name, _ in fields)
+        long = len(shared) > rows
+        self._over = f"; line {line} has {count} of the {len(fields)} values {names}" if long else ""
         return values
+
+    def _short(self, fields: Sequence[Field], shared: Sequence[tuple[int, int]]) -> InputError:
+        """What is said where lines do not make up a record: the first of them has too few values."""
+        line, count = shared[0]
+        names = ", ".join(name for name, _ in fields)
+        problem = f"the record that begins here does not end with line {self.line}"
+        self._lines_of = {fields[0][0]: line}
+        return self._broken(fields[0][0], f"{count} values", problem, f"{len(fields)} values: {names}")
 
     def must(self, fine: bool, name: str, value: float, expected: str) -> None:
         """Note a fault of the field ``name`` of the last record unless it is ``fine``."""
@@ -75,12 +105,15 @@ class Reader:
                 self.line = k + 1
                 raise self._broken("after the last record", words[0], "one value too many", "the end of the file")
 
-    def _next_words(self, name: str) -> list[str]:
+    def _next_words(self, name: str, fields: Sequence[Field], shared: Sequence[tuple[int, int]]) -> list[str]:
         while self.line < len(self._lines):
             self.line += 1
             if words := _words(self._lines[self.line - 1]):
                 return words
-        raise self._broken(name, None, "the file ends here", "a number")
+        began = (
+            f"a number, for the record that line {shared[0][0]} begins with {fields[0][0]}" if shared else "a number"
+        )
+        raise self._broken(name, None, "the file ends here", began)
 
     def _values(self, word: str, name: str, kind: type) -> list[float]:
         again = REPEATED.fullmatch(word)
@@ -93,15 +126,16 @@ class Reader:
             if len(text) > LONGEST_WHOLE:
                 raise self._broken(name, word, "is too large", f"at most {LONGEST_WHOLE} digits")
             return [int(text)] * times
-        if not REAL.fullmatch(text):
+        found = REAL.fullmatch(text)
+        if not found:
             raise self._broken(name, word, "is no number", "a number such as 5.0d-5")
-        value = float(re.sub("[dDqQ]", "e", text))
+        value = float(f"{found[1]}e{found[2] or found[3] or 0}")
         if not math.isfinite(value):
             raise self._broken(name, word, "is too large", "a number below 1.8d308")
         return [value] * times
 
     def _broken(self, name: str, value: str | None, problem: str, expected: str) -> InputError:
-        return InputError([*self.faults, self._fault(name, value, problem, expected)])
+        return InputError([*self.faults, self._fault(name, value, problem, expected + self._over)])
 
     def _fault(self, name: str, value: object, problem: str, expected: str) -> Fault:
         line = self._lines_of.get(name, max(self.line, 1))
@@ -125,3 +159,8 @@ def real(value: float) -> str:
 def table(rows: Sequence[Sequence[float | int]]) -> str:
     """Lines of numbers: whole ones as such, others as ``real``."""
     return "".join(" ".join(str(v) if isinstance(v, int) else real(v) for v in row) + "\n" for row in rows)
+
+
+def plain(rows: Iterable[Sequence[float | int]]) -> str:
+    """Lines of numbers with an e for the exponent, as plotting programs read them."""
+    return table(list(rows)).replace("d", "e")

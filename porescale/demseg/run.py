@@ -6,6 +6,7 @@ energy.dat (DEMseg tutorial I-2): step, then
 f-d_curve.dat (I-3): step, body, force x, place x, force y, place y, moment, angle, the order of the numbers in DEMseg's
 output (the text beside them has force and place the other way round); forces are those of contacts.
 Both every nprn2 steps and at both ends, written anew, whole or absent, every nprn1 steps; steps count on from iloop.
+output.dat, cont.dat, cont2.dat, velocity_y.dat, emissions.dat and breaks.csv: see outputs.py.
 At the end: new_in_gm.dat, new_in_bc.dat (jclid 1), new_in_cf.dat (see state.py) and new_in_cf0.dat (see tension.py),
 for the next run, without new_.
 """
@@ -19,6 +20,7 @@ import numpy as np
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.record.model import Cloud, Snapshot
+from porescale.common.record.open_run import open_run
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series
 from porescale.dem.bodies.frames import cells_of
@@ -26,13 +28,17 @@ from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import LOSSES, WORKS, energy_budget
 from porescale.demseg.build import Options, bodies_now, bonded, build, posture, with_bodies
 from porescale.demseg.deck import BC, BONDED, CF, CF0, GM, GO_ON, Body, Deck, boundary_text, grains_text, read_deck
-from porescale.demseg.numbers import table
+from porescale.demseg.numbers import plain
+from porescale.demseg.outputs import CONTACTS, bodies_of, contact_cloud, write_breaks, write_emissions, write_places
 from porescale.demseg.state import read_state, state_text
 from porescale.demseg.tension import read_tensions, tension_text
 
 ENERGY = ("enrg", "enva", "enka", "enca", "enfr", "enxd", "enxf", "err")
 RECORD = ("force x", "place x", "force y", "place y", "moment", "angle")
 FRICTION = ("lost in friction (J/m)", "lost in rolling friction (J/m)")
+HOLDING = "bonds"
+"""Column of the series: bonds that hold."""
+SPEED = "velocity y"
 FORCES = "fd"
 """Name of the table of recorded bodies in the run folder."""
 
@@ -108,14 +114,17 @@ class DeckRun:
             budget["residual (J/m)"],
         )
         row = {"time": self.time, "step": self.deck.iloop + self.step}
-        return row | dict(zip(ENERGY, values, strict=True))
+        bonds = self.grains.bonds
+        return row | dict(zip(ENERGY, values, strict=True)) | ({} if bonds is None else {HOLDING: float(bonds.count)})
 
     def tables(self) -> dict[str, dict[str, float]]:
         """The recorded bodies, a column for each body and column of f-d_curve.dat."""
         if not self.deck.recorded:
             return {}
         row: dict[str, float] = {"step": self.deck.iloop + self.step}
+        now = bodies_now(self.deck, self.built)
         for body, line in zip(self.deck.recorded, self.grains.steering.record(), strict=True):
+            row[f"body {body}: {SPEED}"] = now[body - 1].velocity[1]
             for k, place in enumerate(posture(self.built, body - 1)):
                 row[f"body {body}: {RECORD[2 * k]}"] = line.contact[k]
                 row[f"body {body}: {RECORD[2 * k + 1]}"] = place
@@ -124,16 +133,18 @@ class DeckRun:
     def snapshot(self) -> Snapshot:
         """Discs, and the ends of segments, with what they make: lines and polygons."""
         d, shot = self.grains.discs, Snapshot(self.time, self.step)
-        split = sum(len(body.discs) for body in self.deck.bodies)
+        split, numbers = sum(len(body.discs) for body in self.deck.bodies), bodies_of(self.built)
         for name, own in (("grains", slice(0, split)), ("ends", slice(split, d.count))):
             if len(d.radius[own]):
                 flat = np.zeros((len(d.radius[own]), 3))
                 flat[:, :2] = d.velocity[own]
-                data = {"radius": d.radius[own], "angle": d.angle[own], "velocity": flat, "spin": d.spin[own]}
+                turned = {"angle": d.angle[own], "velocity": flat, "spin": d.spin[own]}
+                data = {"radius": d.radius[own], **turned, "body": numbers[own]}
                 shot.clouds[name] = Cloud(d.position[own], data)
         if self.built.frames:
             lines, polygons = cells_of(self.built.frames)
             shot.clouds["ends"].lines, shot.clouds["ends"].polygons = lines, polygons
+        shot.clouds[CONTACTS] = contact_cloud(self.built)
         return shot
 
     def state(self) -> dict[str, Any]:
@@ -146,13 +157,17 @@ class DeckRun:
         self.step, self.time = int(state["step"]), float(state["time"])
 
     def write(self, folder: Path) -> None:
-        """energy.dat and f-d_curve.dat, and the files of the next run, into the run folder."""
+        """All that DEMseg leaves, and the files of the next run, into the run folder."""
         self.write_tables(folder)
+        write_places(folder, open_run(folder), self.built, self.deck)
+        write_breaks(folder, self.built)
         self.write_next(folder)
 
     def write_tables(self, folder: Path) -> None:
-        """energy.dat and f-d_curve.dat from the run folder's tables so far, into it, each whole or absent."""
+        """energy.dat and the other tables from the run folder's so far, into it, each whole or absent."""
         energy = read_series(folder / SERIES)
+        if HOLDING in energy:
+            write_emissions(folder, energy["step"].astype(int).tolist(), energy[HOLDING])
         rows = zip(energy["step"].astype(int).tolist(), *(energy[name].tolist() for name in ENERGY), strict=True)
         write_text(folder / "energy.dat", f"# step {' '.join(ENERGY)}\n" + plain(rows))
         if self.deck.recorded:
@@ -163,6 +178,10 @@ class DeckRun:
                 for k, step in enumerate(record["step"].astype(int).tolist())
                 for n, body in enumerate(self.deck.recorded)
             )
+            speeds = [record[f"body {body}: {SPEED}"].tolist() for body in self.deck.recorded]
+            numbers = " ".join(str(body) for body in self.deck.recorded)
+            moving = zip(record["step"].astype(int).tolist(), *speeds, strict=True)
+            write_text(folder / "velocity_y.dat", f"# step, then bodies {numbers}\n" + plain(moving))
             names = "force_x place_x force_y place_y moment angle"
             write_text(folder / "f-d_curve.dat", f"# step body {names}\n" + plain(lines))
 
@@ -176,11 +195,6 @@ class DeckRun:
         write_text(folder / f"new_{BC}", boundary_text(after))
         write_text(folder / f"new_{CF}", state_text(kept))
         write_text(folder / f"new_{CF0}", tension_text(self.built))
-
-
-def plain(rows: Any) -> str:
-    """Lines of numbers with an e for the exponent, as plotting programs read them."""
-    return table(list(rows)).replace("d", "e")
 
 
 def read(folder: Path, options: Options) -> DeckRun:

@@ -3,13 +3,16 @@
 For each point that has some, a line with its number and how many, then as many lines with the number of the other and
 the tension, the force of the contact with its sign turned.  Points are the discs, in the order of in_gm.dat, then the
 ends of segments, those that coincide once; a number beyond the points is a segment.  Each bond stands there twice.
-With discs only that is the layout of the DEMseg tutorial, which gives none for segments.
+With discs only that is the layout of the DEMseg tutorial, which gives none for segments.  The numbers are negative: a
+bond cancels a contact that presses.  Only corners of segments may have positive ones, those of rule "outline" that
+count less than once (segments.py).
 """
 
 from pathlib import Path
 
 import numpy as np
 
+from porescale.common.core.errors import Fault, InputError
 from porescale.dem.bodies.bonding import bond
 from porescale.demseg.build import Built
 from porescale.demseg.deck import MOST_BODIES
@@ -54,7 +57,9 @@ def read_tensions(path: Path, built: Built) -> list[Row]:
     points = built.grains.discs.count
     segments = 0 if built.grains.segments is None else len(built.grains.segments.ends)
     known, file = points + segments, Reader(path)
+    corners = points if built.grains.segments is None else int(built.grains.segments.is_corner.argmax())
     found: dict[tuple[int, int], float] = {}
+    from_: dict[tuple[int, int], set[int]] = {}
     while file.more():
         one, count = file.record(("number", int), ("count", int))
         file.must(1 <= one <= known, "number", one, f"1 to {known}")
@@ -65,7 +70,19 @@ def read_tensions(path: Path, built: Built) -> list[Row]:
             file.must(1 <= two <= known and one != two, "other", two, f"1 to {known}, not {one:g} itself")
             file.must(pair[0] <= points, "other", two, f"1 to {points}: segments are bonded to points")
             file.must(found.setdefault(pair, value) == value, "tension", value, f"{found[pair]:g}, as before")
+            beyond = corners < pair[1] <= points  # a corner, but no segment
+            file.must(value < 0.0 or beyond, "tension", value, "< 0, as a bond cancels a contact that presses")
+            sides = from_.setdefault(pair, set())
+            file.must(int(one) not in sides, "other", two, f"each once for {one:g}")
+            sides.add(int(one))
     file.done()
+    halves = [(pair, min(sides)) for pair, sides in sorted(from_.items()) if len(sides) == 1]
+    if halves:
+        (one, two), named = halves[0]
+        absent = two if named == one else one
+        rest = f", and so of {len(halves) - 1} more" if len(halves) > 1 else ""
+        problem = f"has no bond with {named}, but {named} has one with it{rest}"
+        raise InputError(Fault(f"number {absent}", None, problem, repair="name each bond at both ends", file=str(path)))
     rows = []
     for (one, two), value in sorted(found.items()):
         sided = int(two > points)

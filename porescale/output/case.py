@@ -26,12 +26,13 @@ def expected(folder: Path) -> list[dict[str, Any]]:
     return rows
 
 
-def missed(folder: Path, numbers: Mapping[str, float]) -> list[str]:
+def missed(folder: Path, numbers: Mapping[str, float | None]) -> list[str]:
     """Names of the rows of ``folder``/expected.toml that ``numbers`` lie outside of; a number that is none is outside.
 
-    Raises KeyError at a row without a number.
+    None: the options left it out.  Raises KeyError at a row without a number.
     """
-    return [row["name"] for row in expected(folder) if not abs(numbers[row["name"]] - row["value"]) <= row["tolerance"]]
+    given = [(row, numbers[row["name"]]) for row in expected(folder)]
+    return [row["name"] for row, it in given if it is not None and not abs(it - row["value"]) <= row["tolerance"]]
 
 
 def options(description: str, folder: Path, **more: tuple[type, Any, str]) -> argparse.Namespace:
@@ -63,13 +64,16 @@ def draw(figure: Figure, picture: Path) -> None:
 
 
 def conclude(
-    folder: Path, numbers: Mapping[str, float], figure: Figure, out: Path, say: Callable[[str], object] = print
+    folder: Path, numbers: Mapping[str, float | None], figure: Figure, out: Path, say: Callable[[str], object] = print
 ) -> int:
     """Print every row with what was measured, write ``out``/picture.png; the exit code: 1 if a row is missed."""
     off = missed(folder, numbers)
     for row in expected(folder):
-        word = "MISSED" if row["name"] in off else "ok"
-        number = f"{numbers[row['name']]:.5g}, expected {row['value']:g} ± {row['tolerance']:g} {row['unit']}"
+        word, value = "MISSED" if row["name"] in off else "ok", numbers[row["name"]]
+        if value is None:
+            say(f"none    {row['name']}: these options do not measure it")
+            continue
+        number = f"{value:.5g}, expected {row['value']:g} ± {row['tolerance']:g} {row['unit']}"
         say(f"{word:6}  {row['name']}: {number.rstrip()}")
     out.mkdir(parents=True, exist_ok=True)
     picture = out / "picture.png"

@@ -19,6 +19,35 @@ def test_numbers_are_those_of_fortran(tmp_path):
     reader.done()
 
 
+@pytest.mark.parametrize(
+    ("word", "value"),
+    [("1.0+8", 1e8), ("-.5-3", -5e-4), ("1.0d0", 1.0), ("2.5D+02", 250.0), ("7.", 7.0), ("3q2", 300.0), ("+1e-1", 0.1)],
+)
+def test_every_form_of_a_real_is_its_value(tmp_path, word, value):
+    file = tmp_path / "a.dat"
+    file.write_text(f"{word} 1\n", encoding="utf-8")
+    assert Reader(file).record(("a", float), ("b", int)) == [value, 1]
+
+
+@pytest.mark.parametrize("word", ["1.0d", "1.0+", "+-1", "1.0e+", "1.0x8", "1.0+8.0", "nan", "-inf"])
+def test_what_is_no_real_is_no_comment_either(tmp_path, word):
+    # Where a comment may stand, after the first value of a line: such a word would drop the rest of the line.
+    file = tmp_path / "a.dat"
+    file.write_text(f"1 {word} 2\n3 4\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"line 1, b = '.*': is no number"):
+        Reader(file).record(("a", float), ("b", float), ("c", float))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_a_byte_order_mark_is_passed_over(tmp_path, encoding):
+    plain = read_deck(decks.write(tmp_path))
+    for name, end in (("in_gm.dat", "\r\n"), ("in_bc.dat", "\r\n\x1a")):
+        text = (tmp_path / name).read_text(encoding="utf-8").rstrip("\n")
+        (tmp_path / name).write_bytes((text.replace("\n", "\r\n") + end).encode(encoding))
+    assert (tmp_path / "in_gm.dat").read_bytes()[0] > 127  # the mark is there
+    assert read_deck(tmp_path) == plain
+
+
 @pytest.mark.parametrize("value", [0.1, -5e-5, 1e300, 5e-324, -0.0, 123456789.123456789])
 def test_a_number_reads_back_to_the_same_bits(tmp_path, value):
     file = tmp_path / "a.dat"
@@ -40,6 +69,9 @@ def test_comments_and_blank_lines_are_passed_over(tmp_path):
     noted = "! a disc\n\n" + "\n\n".join(f"{line}   ! {k} 1 2" for k, line in enumerate(lines)) + "\n# end\n"
     words = decks.boundary().replace("400 100 10", "400 100 10   jclid, iloop, nstep")
     assert read_deck(decks.write(tmp_path / "b", noted, words)) == plain
+    # As the tutorial has it: names beside the numbers, also on the first line of a record that has two.
+    named = "\n".join(f"{line}  ielm rad(ielm) 粒子番号 2.0" for line in lines) + "\n"
+    assert read_deck(decks.write(tmp_path / "c", named)) == plain
 
 
 @pytest.mark.parametrize(
@@ -56,6 +88,12 @@ def test_comments_and_blank_lines_are_passed_over(tmp_path):
         ("0.0d0 5.0d0 0.0d0\n", "0.0d0", "line 10, yc: the file ends here, expected a number"),
         ("5.0d0 0.0d0\n", "5.0d0 0.0d0\n3 4\n", "line 11, after the last record = '3': one value too many"),
         ("1.0d8", "1.0d999", "line 4, kn = '1.0d999': is too large"),
+        (
+            "0.0d0 5.0d0 0.0d0",
+            "-10.5 5 0",
+            "line 10, xc = -10.5: makes no sense, expected -10 to 10, inside the domain",
+        ),
+        ("0.0d0 5.0d0 0.0d0", "0 10.1 0", "line 10, yc = 10.1: makes no sense, expected 0 to 10, inside the domain"),
         ("-10.0d0 10.0d0", "10.0d0 -10.0d0", "line 5, x2 = -10: makes no sense, expected > x1 = 10"),
     ],
 )
@@ -85,11 +123,40 @@ def test_a_malformed_in_bc_is_named_by_line_and_field(tmp_path, bc, said):
     assert "in_bc.dat: " in str(caught.value)
 
 
+SHORT = "'5 values': the record that begins here does not end with line 5, expected 6 values: rho, kn, ks, cn, cs, mu"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("0.0d0 0.0d0 0.0d0\n-10", "0.0d0 0.0d0\n-10", f"line 4, rho = {SHORT}"),
+        ("0.0d0 0.0d0 0.0d0\n-10", "0.0d0 0.0d0 mu\n-10", f"line 4, rho = {SHORT}"),
+        ("5.0d-5 0.0 -980.0d0", "5.0d-5 0.0", "line 4, nmat = '2.5d0': is no whole number, expected a whole number; "
+         "line 2 has 2 of the 3 values dt, gx, gy"),
+        ("1 2.0d0", "1", "line 10, wc: the file ends here, expected a number, for the record that line 9 begins with"),
+    ],
+)  # fmt: skip
+def test_a_line_with_too_few_values_is_the_one_that_is_named(tmp_path, old, new, said):
+    assert old in decks.DISC
+    with pytest.raises(InputError) as caught:
+        read_deck(decks.write(tmp_path, decks.DISC.replace(old, new, 1)))
+    assert said in str(caught.value)
+    assert len(caught.value.faults) == 1
+
+
 def test_all_faults_of_meaning_are_said_at_once(tmp_path):
     bad = decks.DISC.replace("5.0d-5", "0").replace("2.5d0", "-1").replace("1 2.0d0", "1 0")
     with pytest.raises(InputError) as caught:
         read_deck(decks.write(tmp_path, bad))
     assert [fault.key for fault in caught.value.faults] == ["line 2, dt", "line 4, rho", "line 9, rad"]
+
+
+def test_a_segment_with_an_end_outside_is_refused_and_a_container_is_not(tmp_path):
+    outside = decks.SEGMENT.replace("-2.0d0 2.0d0", "-2.0d0 -1.0d0")
+    with pytest.raises(InputError, match="line 9, y1 = -1: makes no sense, expected 0 to 10, inside the domain"):
+        read_deck(decks.write(tmp_path / "a", outside))
+    held = outside.replace("0 1 0\n1 1 1", "0 0 1\n1 1 1")
+    assert read_deck(decks.write(tmp_path / "b", held)).bodies[0].long
 
 
 def test_a_missing_file_is_named(tmp_path):

@@ -167,7 +167,7 @@ def markdown(command: str, lines: Sequence[Line]) -> str:
         ends = f"{line.values[1]:.6g}, {line.values[-1]:.6g}"
         because, seconds = line.because, f"{line.seconds:.0f}"
         rows.append((line.flow, line.steps, line.quantity, ends, off, f"{line.allowed:.3g}", because, seconds))
-    top = [f"Written by `{command}`.", "", f"![marks]({NAME}.png)", ""]
+    top = ["# Long runs", "", f"Written by `{command}`.", "", f"![marks]({NAME}.png)", ""]
     return "\n".join([*top, *files.markdown_table(header, rows)]) + "\n"
 
 

@@ -85,9 +85,11 @@ def write(folder: Path, command: str, rows: Sequence[Row]) -> None:
 
 def markdown(command: str, rows: Sequence[Row]) -> str:
     """The table of all tries, one a row."""
-    top = f"Written by `{command}`.  *Stable*: it came to its end in sense;  *right*: and a known number holds."
+    said = f"Written by `{command}`.  *Stable*: it came to its end in sense;  *right*: and a known number holds."
     cells = [(row.axis, row.value, f"**{row.end}**", row.said) for row in rows]
-    return "\n".join([top, "", *files.markdown_table(("what", "how far", "end", "said"), cells)]) + "\n"
+    return (
+        "\n".join(["# Extremes", "", said, "", *files.markdown_table(("what", "how far", "end", "said"), cells)]) + "\n"
+    )
 
 
 def picture(rows: Sequence[Row]) -> bytes:

@@ -44,13 +44,15 @@ def place(
     radii: Floats | None = None,
     periodic: tuple[bool, bool] = (False, False),
     seed: int = 0,
+    start: Floats | None = None,
 ) -> Placement:
     """Discs wholly inside the box (or across a periodic side), none touching another; the same for the same seed.
 
     Either ``radii`` (n,) m, or two of mean ``diameter`` (m), ``count`` and ``packing_fraction`` (disc area
     over box area, at most 0.80): the third follows.  Diameters are uniform in diameter (1 ± spread), with
     0 <= spread < 1.  A fraction that fixes the count is matched as nearly as whole discs allow; ``Placement.fraction``
-    gives what was reached.  Equal discs (spread 0) crystallise above a fraction of about 0.7.
+    gives what was reached.  Equal discs (spread 0) crystallise above a fraction of about 0.7.  start (n, 2) m: where
+    the discs of ``radii`` slide apart from, over the lower corner, in place of random places.
 
     Raises InputError for values out of range, or with the overlap left when the discs do not fit.
     """
@@ -66,7 +68,8 @@ def place(
     largest = 2.0 * float(radius.max(initial=0.0))
     if largest > min(size):
         raise InputError(Fault("diameter", largest, "a disc is larger than the box", "m", f"<= {min(size):.6g}"))
-    start = rng.uniform((0.0, 0.0), size, (len(radius), 2))
+    if start is None:
+        start = rng.uniform((0.0, 0.0), size, (len(radius), 2))
     position, sweeps = slide_apart(start, radius, size, periodic, fraction)
     return Placement(position + np.array(lower), radius, fraction, sweeps)
 

@@ -197,18 +197,20 @@ def framed(
     rule: str = "outline",
     skin: float | None = None,
     material: ArrayLike | None = None,
+    corner_material: Sequence[ArrayLike] | None = None,
     **more: Any,
 ) -> Grains:
     """A system of ``discs``, some of them bound to ``clumps`` (disc numbers of each), and of ``frames``.
 
     Corners are rows after the discs, frames are clumps after ``clumps``: frame k is ``Clump(len(clumps) + k)``.
     rule : of contacts with segments, see segments.py;  skin : m, of the pair lists (default: half the mean size of
-    discs and halves of segments that are not long);  material : of the discs;  more : as for Grains.
+    discs and halves of segments that are not long);  material : of the discs;  corner_material : of the corners of each
+    frame (default: the frame's);  more : as for Grains.
     Raises InputError for plates (make them frames) and for Hertz's law with frames that have no thickness.
     """
     first = 0 if discs is None else discs.count
     every = together(*([] if discs is None else [discs]), corner_discs(frames))
-    own = np.concatenate([np.full(len(frame.corners), frame.material) for frame in frames])
+    own = np.concatenate(corner_material or [np.full(len(frame.corners), frame.material) for frame in frames])
     given = np.broadcast_to(np.asarray(0 if material is None else material), (first,))
     if more.get("plates"):
         raise InputError(

@@ -138,10 +138,13 @@ MODULES = {
 
 
 def undeclared(modules: set[str]) -> set[str]:
-    """Modules that no dependency and no extra for users brings."""
+    """Modules that no dependency and no extra for users brings (that of the manual is for its builder)."""
     extras = PROJECT["project"]["optional-dependencies"]
     declared = named(
-        [*PROJECT["project"]["dependencies"], *(it for key in extras if key != "test" for it in extras[key])]
+        [
+            *PROJECT["project"]["dependencies"],
+            *(it for key in extras if key not in ("test", "docs") for it in extras[key]),
+        ]
     )
     return {it for it in modules if MODULES.get(it, it) not in declared}
 

@@ -1,5 +1,6 @@
 """Cases of grains that are scripts: each measures what its expected.toml says, and would say so if it did not."""
 
+import json
 import math
 import re
 from dataclasses import replace
@@ -111,6 +112,25 @@ def test_the_angle_of_repose_saturates_with_friction_and_the_energy_book_closes(
     case = script("angle_of_repose")
     numbers, _ = case.measure(frictions=(case.FRICTIONS[0], case.TUTORIAL, case.FRICTIONS[-1]))
     assert missed(CASES / "angle_of_repose", numbers) == []
+
+
+def test_one_packing_has_no_scatter_and_says_what_it_is_worth(capsys):
+    case = script("angle_of_repose")
+    assert case.scatter({case.TUTORIAL: np.array([20.0])}) is None
+    assert "one packing has no scatter: its angles are worth ± 1.9°" in capsys.readouterr().out
+    assert case.deviation(np.array([20.0])) == case.SCATTER
+    assert case.scatter({case.TUTORIAL: np.array([20.0, 22.0])}) == pytest.approx(2.0**0.5)
+    # What it is worth is what the recorded run of several packings measured.
+    recorded = json.loads((CASES / "angle_of_repose" / "recorded.json").read_text(encoding="utf-8"))["numbers"]
+    assert pytest.approx(recorded["scatter of the angle over packings"], abs=0.05) == case.SCATTER
+
+
+def test_a_number_that_the_options_left_out_is_none_and_not_missed(tmp_path):
+    (tmp_path / "expected.toml").write_text('[[expected]]\nname = "a"\nvalue = 1\ntolerance = 0.1\n', encoding="utf-8")
+    assert missed(tmp_path, {"a": None}) == []
+    assert missed(tmp_path, {"a": math.nan}) == ["a"]  # the twin: what is no number is missed
+    with pytest.raises(KeyError):
+        missed(tmp_path, {})
 
 
 @pytest.mark.slow

@@ -1,0 +1,1 @@
+"""The manual: built, its links checked, the code of its pages run."""

@@ -1,0 +1,124 @@
+"""The code of the manual's pages, run from the top of a page to its end: ``python -m tests.manual.snippets PAGE``.
+
+```python blocks run one after another in one Python: names carry on down the page.  Of ```console blocks, each line
+that starts with ``$ `` runs in a shell that has ``porescale``, ``continuum-sph`` and ``python``; it goes on where it
+ends with a backslash.  All run in one folder, empty at the start.  A comment before a block says what is special:
+
+    <!-- not run: reason -->        the block does not run
+    <!-- file: NAME -->             the block, of any kind, is written to this file of the folder instead
+    <!-- exit code: N -->           the last command of the block ends with N instead of 0
+"""
+
+import os
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tests.reference.folders import DOCS, ROOT
+
+FOLDERS = ("first_hour", "howto", "develop")
+PAGES = sorted(path for folder in FOLDERS for path in (DOCS / folder).glob("*.md"))
+BLOCK = re.compile(
+    r"(?:^<!-- (?P<note>[^\n]*?) -->\n\s*)?^(?P<fence>`{3,}|:{3,})(?P<kind>[^\n`]*)\n(?P<code>.*?)^(?P=fence)\s*$",
+    re.M | re.S,
+)
+COMMAND = re.compile(r"^\$ ((?:[^\n]*\\\n)*[^\n]*)", re.M)
+LIMIT = 300
+"""Seconds that one command may take, compiling included."""
+
+
+@dataclass(frozen=True)
+class Snippet:
+    """A fenced block: its kind, its text, the comment before it, and the line of the page that its text starts at."""
+
+    kind: str
+    code: str
+    note: str
+    line: int
+
+    @property
+    def file(self) -> str:
+        """The file that it is written to; empty: none."""
+        return self.note.removeprefix("file:").strip() if self.note.startswith("file:") else ""
+
+    @property
+    def code_at_end(self) -> int:
+        """Exit code of its last command."""
+        return int(self.note.removeprefix("exit code:")) if self.note.startswith("exit code:") else 0
+
+    @property
+    def runs(self) -> bool:
+        """Whether it is run or written."""
+        return bool(self.file) or (self.kind in ("python", "console") and not self.note.startswith("not run"))
+
+    def commands(self) -> list[str]:
+        """The lines of a console block that follow a prompt."""
+        return [match[1] for match in COMMAND.finditer(self.code)]
+
+
+def snippets(text: str) -> list[Snippet]:
+    """The blocks of a page, from its top."""
+    return [
+        Snippet(match["kind"].strip(), match["code"], match["note"] or "", text.count("\n", 0, match.start("code")) + 1)
+        for match in BLOCK.finditer(text)
+    ]
+
+
+def surroundings(folder: Path) -> dict[str, str]:
+    """The environment of commands: ``porescale``, ``continuum-sph`` and ``python`` are those of this checkout."""
+    folder.mkdir()
+    for name, call in {"porescale": "-m porescale", "continuum-sph": "-m continuum_sph", "python": ""}.items():
+        path = folder / name
+        path.write_text(f'#!/bin/sh\nexec "{sys.executable}" {call} "$@"\n', encoding="utf-8")
+        path.chmod(0o755)
+    sources = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
+    path_ = f"{folder}{os.pathsep}{os.environ['PATH']}"
+    return {**os.environ, "PATH": path_, "PYTHONPATH": sources, "MPLBACKEND": "Agg"}
+
+
+def run_page(page: Path, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run all of a page in a process of its own, in an empty ``folder``."""
+    environment = surroundings(folder.parent / f"{folder.name}_bin")
+    command = [sys.executable, "-m", "tests.manual.snippets", str(page)]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=2 * LIMIT)
+
+
+def main(page: Path) -> None:
+    """Run a page here; an exception, or a SystemExit that names the line, where a block fails."""
+    names: dict[str, object] = {"__name__": "__main__"}
+    for snippet in snippets(page.read_text(encoding="utf-8")):
+        if not snippet.runs:
+            continue
+        if snippet.file:
+            Path(snippet.file).parent.mkdir(parents=True, exist_ok=True)
+            Path(snippet.file).write_text(snippet.code, encoding="utf-8")
+        elif snippet.kind == "python":
+            exec(compile("\n" * (snippet.line - 1) + snippet.code, str(page), "exec"), names)
+        else:
+            commands = snippet.commands()
+            if not commands:
+                raise SystemExit(f"{page.name}, line {snippet.line}: no command; lines with one start with '$ '")
+            for command in commands:
+                due = snippet.code_at_end if command == commands[-1] else 0
+                done = subprocess.run(
+                    ["bash", "-c", command], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=LIMIT
+                )
+                print(f"$ {command}\n{done.stdout}{done.stderr}", flush=True)
+                if done.returncode != due:
+                    raise SystemExit(f"{page.name}, line {snippet.line}: exit code {done.returncode}, not {due}")
+
+
+if __name__ == "__main__":
+    # By hand, anywhere but in an empty folder: in one that is made for it and removed.
+    target = Path(sys.argv[1]).resolve()
+    if os.listdir():
+        with TemporaryDirectory() as empty:
+            (Path(empty) / "page").mkdir()
+            done = run_page(target, Path(empty) / "page")
+        print(done.stdout + done.stderr)
+        sys.exit(done.returncode)
+    sys.path.insert(0, os.getcwd())  # as for a script that lies there
+    main(target)
