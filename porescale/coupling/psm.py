@@ -64,8 +64,8 @@ class SaturatedCells:
     force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,
     ring_torque: on the others, what the fluid inside them takes already given back;  push (discs + polygons + others,
     2): what the body force does to all of them, not in those loads (push.py);  beyond (of the same length): areas of
-    theirs, cells², that cover no cells but are pushed, set by the owner;  entrained (n, 2): mass and moment
-    of inertia of the fluid that took the discs' velocity.  Discs cover cells with the radius ``covering_radius``.
+    theirs, cells², that cover no cells but are pushed, set by the owner;  driven: whether there is a body
+    force;  entrained (n, 2): mass and moment of inertia of the fluid that took the discs' velocity.  Discs cover cells with the radius ``covering_radius``.
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
     them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
     that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;
@@ -151,7 +151,7 @@ class SaturatedCells:
         """Arrays of the loads of ``count`` bodies, and what the body force on the fluid adds to each at once."""
         discs = len(self.radius)
         movers = discs + (self.polygons.count if self.polygons else 0)
-        self.push = np.zeros((count, 2))
+        self.push, self.driven = np.zeros((count, 2)), bool(force.any())
         self.beyond, self._taken, self._drive = np.zeros(count), np.zeros(count), np.tile(force, (count, 1))
         self._load, self._entrained = np.zeros((count, 3)), np.zeros((count, 2))
         self.force, self.torque, self.entrained = self._load[:discs, :2], self._load[:discs, 2], self._entrained[:discs]
@@ -165,7 +165,7 @@ class SaturatedCells:
     def _follow_force(self, force: Reals, centre: Reals) -> None:
         """What a body force of every cell (2, ny, nx) does to bodies at once: as if it were that at their centres."""
         x, y = (np.clip(centre[:, a].astype(np.int64), 0, self._shape[1 - a] - 1) for a in (0, 1))
-        self._drive[:] = force[:, y, x].T
+        self.driven, self._drive[:] = True, force[:, y, x].T
         discs = len(self.radius)
         self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * self._drive[:discs]
 
@@ -290,7 +290,7 @@ class SaturatedCells:
             *self._laws,
         )  # fmt: skip
         self._sum_loads(fluid)
-        if self._drive.any() or self.push.any():
+        if self.driven:
             self._push_bodies()
         if self.operator.half_step_correction:
             half_step_correction(self._load, self._entrained, self._direct, LOW_PASS, self._slow_load, self._shift)

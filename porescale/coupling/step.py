@@ -136,13 +136,15 @@ class Coupled:
             square = (wet.covering_radius / wet.radius) ** 2
             self.inner_mass[seen] = self._displaced.mass[seen] * square
             self.inner_inertia[seen] = self._displaced.inertia[seen] * square**2
-        np.multiply(wet.push[seen], self._units[0], out=self.push[seen])
+        if wet.driven:
+            np.multiply(wet.push[seen], self._units[0], out=self.push[seen])
         cells = CellLoad(wet.force, wet.torque, wet.entrained)
         self.immersed.respond(cells, self._units, discs.velocity, discs.spin[seen], step)
         if self.polygons:
             p = self.polygons
             cells = CellLoad(wet.polygon_load[:, :2], wet.polygon_load[:, 2], wet.polygon_entrained)
-            np.multiply(wet.push[seen.stop : seen.stop + p.polygons.count], self._units[0], out=p.push)
+            if wet.driven:
+                np.multiply(wet.push[seen.stop : seen.stop + p.polygons.count], self._units[0], out=p.push)
             p.respond(cells, self._units, p.velocity, p.spin, step)
             p.distribute(self.immersed)
 
