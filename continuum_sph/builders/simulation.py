@@ -147,7 +147,11 @@ class Simulation(ShownSimulation):
             part.check()
 
     def series(self) -> dict[str, float]:
-        """One row: the time, and the columns of all parts."""
+        """One row: the time, and the columns of all parts.
+
+        time (s) : time of the row, since the start
+        step (s) : length of the next step
+        """
         return {"time (s)": self.time, "step (s)": self.step_seconds} | row_of(self.parts)
 
     def tables(self) -> dict[str, dict[str, float]]:

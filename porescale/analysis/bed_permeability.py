@@ -66,7 +66,19 @@ def measure_window(scene: Scene, grains: Cloud) -> Measured:
 
 
 def row(time: float, ratio: float, found: Measured) -> dict[str, float]:
-    """The columns of a measurement, SI, with what regular arrays and beds of this solid fraction have."""
+    """The columns of a measurement, SI, with what regular arrays and beds of this solid fraction have.
+
+    time (s) : of the snapshot whose bed is measured
+    permeability (m²) : k of Darcy's law, by a flow that is driven through the bed
+    permeability over hydraulic diameter² () : the same without unit
+    hydraulic radius ratio () : radius that the fluid sees, over that of the grain; 1 where none is given
+    hydraulic solid fraction () : of the radii that the fluid sees
+    cells per hydraulic diameter () : resolution of the measurement
+    Gebart, square array (m²) : permeability of a square array of this solid fraction
+    Gebart, hexagonal array (m²) : permeability of a hexagonal array of this solid fraction
+    Kozeny-Carman (m²) : permeability by that formula
+    steady () : 1 if the flow came to rest, 0 if the measurement ended before
+    """
     c, square = found.solid_fraction, (0.5 * found.diameter) ** 2
     return {
         "time (s)": float(time),

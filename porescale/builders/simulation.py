@@ -196,7 +196,10 @@ class Simulation(ShownSimulation):
             part.check()
 
     def series(self) -> dict[str, float]:
-        """One row: time, and the columns of every part."""
+        """One row: time, and the columns of every part.
+
+        time (s) : time of the row, since the start
+        """
         return {"time (s)": self.time} | row_of(self.parts)
 
     def tables(self) -> dict[str, dict[str, float]]:

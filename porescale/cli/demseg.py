@@ -23,6 +23,7 @@ CHECKPOINT_SECONDS = 30.0
 Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat, or name of a case (see `cases`)")]
 Seed = Annotated[int, Parameter(help="of the random discs of mode 0")]
 Release = Annotated[Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")]
+Rule = Annotated[Literal["outline", "each", "printed"], Parameter(help="of contacts with segments")]
 Rod = Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")]
 
 
@@ -42,7 +43,7 @@ def run(
     out: Annotated[Path | None, Parameter(help="run folder; runs/ and the name of the deck's if not given")] = None,
     seed: Seed = 0,
     release: Release = "overlap",
-    rule: Annotated[Literal["outline", "each", "printed"], Parameter(help="of contacts with segments")] = "outline",
+    rule: Rule = "outline",
     rod: Rod = None,
     threads: Threads = None,
     resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
@@ -145,16 +146,18 @@ def convert(
     ] = "plain",
     seed: Seed = 0,
     release: Release = "overlap",
+    rule: Rule = "outline",
     rod: Rod = None,
     overwrite: Annotated[bool, Parameter(help="replace the file")] = False,
 ) -> int:
-    """Make a scene of a deck that does not go on from another run."""
+    """Make a scene of a deck."""
     from porescale.common.cli.folders import require_writable
     from porescale.common.core.atomic import write_text
-    from porescale.demseg.build import Options, build, with_bodies
-    from porescale.demseg.convert import UNITS, scene_of, toml
-    from porescale.demseg.deck import BONDED, CF0, read_deck
-    from porescale.demseg.tension import read_tensions
+    from porescale.demseg.build import Options
+    from porescale.demseg.convert import UNITS, scene_of, stretched, toml
+    from porescale.demseg.deck import GO_ON, read_deck
+    from porescale.demseg.run import DeckRun
+    from porescale.demseg.tension import tensions
 
     folder = _deck_folder(folder)
     name = folder.resolve().name
@@ -162,12 +165,17 @@ def convert(
     require_writable(file.parent, "--out")
     if file.exists() and not overwrite:
         raise InputError(Fault("--out", str(file), "is there already", repair="name another, or --overwrite it"))
-    deck = with_bodies(read_deck(folder), seed)
-    bonded = deck.jclid == BONDED
-    bonds = read_tensions(folder / CF0, build(deck, Options(seed, release, rod=rod))) if bonded else None
-    text = toml(scene_of(deck, name, release, UNITS[units], bonds, rod))
+    deck = read_deck(folder)
+    if rule != "outline" and any(body.segments for body in deck.bodies):
+        problem = "scenes count corners of segments once"
+        raise InputError(Fault("--rule", rule, problem, allowed="outline", repair="use porescale demseg run"))
+    model = DeckRun(deck, Options(seed, release, rod=rod), folder)
+    bonds = tensions(model.built) if model.grains.bonds is not None else None
+    text = toml(scene_of(model.deck, name, release, UNITS[units], bonds, rod))
     _require_valid_scene(text)
     write_text(file, text)
+    if deck.jclid == GO_ON and (count := stretched(model.grains)):
+        print(f"{file}: begins without the tangential springs of {count} contacts, which scenes start at rest")
     print(f"{file}: check it with porescale check {file}")
     return 0
 

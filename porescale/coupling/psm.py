@@ -65,7 +65,8 @@ class SaturatedCells:
     ring_torque: on the others, what the fluid inside them takes already given back;  push (discs + polygons + others,
     2): what the body force does to all of them, not in those loads (push.py);  beyond (of the same length): areas of
     theirs, cells², that cover no cells but are pushed, set by the owner;  driven: whether there is a body
-    force;  entrained (n, 2): mass and moment of inertia of the fluid that took the discs' velocity.  Discs cover cells with the radius ``covering_radius``.
+    force;  entrained (n, 2): mass and moment of inertia of the fluid that took the discs' velocity.  Discs cover cells
+    with the radius ``covering_radius``.
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
     them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
     that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;

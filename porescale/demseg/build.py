@@ -71,9 +71,7 @@ def with_bodies(deck: Deck, seed: int) -> Deck:
 def random_discs(deck: Deck, random: Random, seed: int) -> tuple[Body, ...]:
     """Discs of mode 0, see module.  Raises InputError where they do not fit."""
     x1, x2, y1, y2 = deck.domain
-    small, large = random.smallest, random.largest
-    mean = math.pi * (small**2 + small * large + large**2) / 3.0
-    count = round((x2 - x1) * (y2 - y1) / (1.0 + random.void_ratio) / mean)
+    small, large, count = random.smallest, random.largest, random.count(deck.domain)
     if count < 1:
         raise InputError(Fault("void ratio", random.void_ratio, "leaves no room for a disc", file="in_gm.dat"))
     rng = np.random.default_rng(seed)

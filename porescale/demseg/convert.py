@@ -3,7 +3,9 @@
 Scenes have discs, clumps, bodies of segments, materials, walls, controls and bonds; their domain begins at the origin.
 Their bodies are in another order: discs, clumps, segments, polygons, so sums are added up otherwise and runs agree to
 round-off, as long as it does not grow.  Scenes have no angle at the start, which is left out: nothing depends on it.
-Decks that go on from another run (jclid 1) raise an error: scenes do not start with springs that are stretched.
+Scenes do not start with springs that are stretched: a deck that goes on from another run (jclid 1) begins with its
+places, speeds and bonds, and with tangential springs at rest; ``stretched`` says how many.  Contacts count corners of
+segments once (rule "outline").
 """
 
 import json
@@ -14,10 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from porescale.common.core.errors import Fault, InputError
 from porescale.dem.bodies.frames import from_ends
+from porescale.dem.grains import Grains
+from porescale.dem.measures.contacts import contacts
 from porescale.demseg.build import ROD
-from porescale.demseg.deck import BC, GO_ON, MOVED, Body, Control, Deck
+from porescale.demseg.deck import MOVED, Body, Control, Deck
 from porescale.demseg.numbers import real
 from porescale.demseg.tension import Row
 
@@ -39,12 +42,10 @@ UNITS = {"plain": Units(), "cgs": Units(1e-2, 1e3), "mm-g": Units(1e-3, 1e6)}
 def scene_of(
     deck: Deck, name: str, release: str, units: Units, bonds: list[Row] | None = None, rod: float | None = None
 ) -> dict[str, Any]:
-    """The tables of the scene of a deck with bodies; raises InputError at what scenes do not have, see module.
+    """The tables of the scene of a deck with bodies, see module.
 
-    bonds : those of a deck with jclid 3, see tension.py;  rod : width of segments that weigh, see build.py.
+    bonds : those that hold, see tension.py;  rod : width of segments that weigh, see build.py.
     """
-    if deck.jclid == GO_ON:
-        raise InputError(Fault("jclid", deck.jclid, "goes on from another run", allowed="0 or 3", file=BC))
     size, stiff = units.length, units.density * units.length**2  # of the second: stiffness and damping, per depth
     x1, x2, y1, y2 = deck.domain
     scene: dict[str, Any] = {
@@ -78,6 +79,11 @@ def scene_of(
     recorded = sorted({*given, *deck.recorded})
     scene["control"] = [_control(deck, it, order, given.get(it), size, stiff * size) for it in recorded]
     return {key: part for key, part in scene.items() if part != []}
+
+
+def stretched(grains: Grains) -> int:
+    """Contacts whose tangential springs are not at rest."""
+    return int(np.count_nonzero(contacts(grains).spring))
 
 
 def _contact(deck: Deck, material: int, stiff: float) -> dict[str, Any]:

@@ -17,9 +17,11 @@ in_bc.dat:
     npfd, and the numbers of as many bodies to record
     npbd, and for as many bodies to control: ic, then kind and value of x, y and rotation;
     kind 1: moved by the value in all over the nstep steps, kind 0: pushed with the value
+mode 0 numbers its discs from 1, each seed by another order of sizes; npfd and npbd name them as they do bodies.
 jclid 0: a new start;  1: goes on from in_cf.dat, see state.py;  3: bonded by in_cf0.dat, see tension.py.
 """
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -68,6 +70,12 @@ class Random:
     material: int
     void_ratio: float
 
+    def count(self, domain: Four) -> int:
+        """How many discs of radii uniform between the two fill a domain to the void ratio."""
+        x1, x2, y1, y2 = domain
+        mean = math.pi * (self.smallest**2 + self.smallest * self.largest + self.largest**2) / 3.0
+        return round(min((x2 - x1) * (y2 - y1) / (1.0 + self.void_ratio) / mean, MOST_BODIES))
+
 
 @dataclass(frozen=True)
 class Control:
@@ -108,7 +116,7 @@ def _grains(file: Reader) -> Deck:
     mode, mode2, mode3 = file.record(("mode", int), ("mode2", int), ("mode3", int))
     file.must(mode in (0, 1), "mode", mode, "0 (random discs) or 1 (bodies)")
     for name, value in (("mode2", mode2), ("mode3", mode3)):
-        file.must(value == 0, name, value, "0, the default")
+        file.must(value == 0, name, value, "0, the default: the tutorial says what no other does")
     dt, gx, gy = file.record(("dt", float), ("gx", float), ("gy", float))
     file.must(dt > 0.0, "dt", dt, "> 0")
     (count,) = file.record(("nmat", int))
@@ -194,17 +202,15 @@ def _boundary(file: Reader, deck: Deck) -> Deck:
     file.must(jclid in (NEW, GO_ON, BONDED), "jclid", jclid, "0 (new), 1 (goes on), 3 (bonds)")
     for name, value in zip(names[1:], counts, strict=True):
         file.must(value >= (name != "iloop"), name, value, "0 or more" if name == "iloop" else "1 or more")
-    most = len(deck.bodies) or MOST_BODIES  # that of mode 0 follows later
+    most = len(deck.bodies) if deck.random is None else deck.random.count(deck.domain)
     (npfd,) = file.record(("npfd", int))
     file.must(0 <= npfd <= most, "npfd", npfd, f"0 to {most}")
-    file.must(npfd == 0 or deck.random is None, "npfd", npfd, "0 with mode 0, which numbers bodies as it makes them")
     watched = [f"recorded body {k + 1}" for k in range(int(npfd) if npfd <= most else 0)]
     recorded = [int(n) for n in file.record(*((name, int) for name in watched))] if watched else []
     for name, n in zip(watched, recorded, strict=True):
         file.must(1 <= n <= most, name, n, f"1 to {most}")
     (npbd,) = file.record(("npbd", int))
     file.must(0 <= npbd <= most, "npbd", npbd, f"0 to {most}")
-    file.must(npbd == 0 or deck.random is None, "npbd", npbd, "0 with mode 0, which numbers bodies as it makes them")
     controls = tuple(_control(file, most) for _ in range(min(int(npbd), most)))
     for k, control in enumerate(controls):
         file.must(control.body not in {other.body for other in controls[:k]}, "ic", control.body, "each body once")

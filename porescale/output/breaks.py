@@ -16,7 +16,15 @@ COLUMNS = ("time (s)", "x (m)", "y (m)", "strength (N/m)", "body ()", "other bod
 
 
 def write_breaks(run: Run, folder: Path) -> list[Path]:
-    """Write breaks.csv, a row a bond that broke until the last snapshot, by time; [] where a run has no bonds."""
+    """Write breaks.csv, a row a bond that broke until the last snapshot, by time; [] where a run has no bonds.
+
+    time (s) : at which the bond broke
+    x (m) : where it broke
+    y (m) : where it broke
+    strength (N/m) : tension at which it breaks
+    body () : the one body, by kind and number
+    other body () : the other body
+    """
     if not len(run) or BONDS not in (clouds := run.snapshot(-1, cells=()).clouds):
         return []
     data = {name: np.asarray(values)[::2] for name, values in clouds[BONDS].data.items()}

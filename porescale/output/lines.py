@@ -24,7 +24,19 @@ LAMBDA = "hydraulic radius ratio ()"
 
 
 def write_lines(run: Run, folder: Path) -> list[Path]:
-    """Write lines.csv, a row a point: of every line in its turn, of every snapshot; [] if the scene has no line."""
+    """Write lines.csv, a row a point: of every line in its turn, of every snapshot; [] if the scene has no line.
+
+    time (s) : of the snapshot
+    line () : name of the line
+    distance (m) : along the line, from its start
+    x (m) : of the point
+    y (m) : of the point
+    velocity x (m/s) : of the fluid there
+    velocity y (m/s) : of the fluid there
+    pressure (Pa) : there, with its hydrostatic part
+    solid fraction () : of the cell there
+    hydraulic radius ratio () : where the grains have one
+    """
     lines = run.card["scene"].get("line") or []
     if not lines:
         return []

@@ -19,7 +19,11 @@ BIN_WIDTH = 2.0
 
 
 def write_surface(run: Run, folder: Path) -> Path:
-    """Write profile.csv: a row per snapshot, a column per bin with the height of the surface there, m."""
+    """Write profile.csv: a row per snapshot, a column per bin with the height of the surface there, m.
+
+    time (s) : of the snapshot
+    height at x = X m (m) : of the surface of the pile over the bin about X, two mean diameters wide
+    """
     width = run.card["scene"]["domain"]["width"]
     first = run.snapshot(0, cells=()).clouds["grains"]
     diameter = 2 * float(np.mean(first.data["radius"]))

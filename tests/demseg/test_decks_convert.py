@@ -75,12 +75,60 @@ def test_random_discs_become_a_scene(tmp_path):
     assert (scene.grains.discs.position == deck.grains.discs.position).all()  # text keeps the bits
 
 
-def test_continuations_are_refused_by_name(tmp_path):
+def continued(tmp_path, material):
+    """A deck that goes on 1700 steps after the start, in a contact with the floor, and the scene made of it."""
+    gm = decks.DISC.replace("0.0d0 0.0d0 0.0d0\n1 2", "60 0 0\n1 2").replace("-10.0d0 10.0d0 0", "-20 20 0")
+    gm = gm.replace("0.0d0 0.0d0 0.0d0\n-20", f"{material}\n-20")
+    before = read(decks.write(tmp_path / "a", gm), Options())
+    before.advance(1580)
+    assert before.series()["enka"] > 0.0
+    folder = tmp_path / "b"
+    folder.mkdir()
+    before.write_next(folder)
+    for file in folder.iterdir():
+        file.rename(folder / file.name.removeprefix("new_"))
+    assert demseg.convert(folder, out=tmp_path / "a.toml") == 0
+    return before, build(load(tmp_path / "a.toml", Scene))
+
+
+@pytest.mark.parametrize(("material", "alike"), [("0 0 0", True), ("0 0 27", False)])
+def test_a_continuation_becomes_a_scene_with_tangential_springs_at_rest(tmp_path, capsys, material, alike):
+    deck, scene = continued(tmp_path, material)
+    said = "begins without the tangential springs of 1 contacts"
+    assert (said in capsys.readouterr().out) != alike
+    for model in (deck, scene):
+        model.advance(100)
+    # Without friction there are no such springs: the same to round-off, multiplied by a contact (see below).
+    assert (apart(deck, scene) < 1e-12) == alike
+
+
+def test_a_continuation_without_its_state_is_refused_by_name(tmp_path):
     folder = decks.write(tmp_path / "deck", decks.PUSHED, decks.boundary("1 0 20 10 10", *decks.PUSH))
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(InputError, match=r"in_cf\.dat: cannot be read .*jclid 1 needs it"):
         demseg.convert(folder, out=tmp_path / "a.toml")
-    assert [fault.key for fault in caught.value.faults] == ["jclid"]
     assert not (tmp_path / "a.toml").exists()
+
+
+def test_a_rule_that_scenes_do_not_have_is_refused_where_it_would_matter(tmp_path):
+    folder = decks.write(tmp_path / "deck", decks.TRIANGLE)
+    with pytest.raises(InputError, match="--rule = 'each': scenes count corners of segments once"):
+        demseg.convert(folder, out=tmp_path / "a.toml", rule="each")
+    discs = decks.write(tmp_path / "discs")
+    assert demseg.convert(discs, out=tmp_path / "b.toml", rule="each") == 0
+
+
+def test_discs_of_mode_0_are_controlled_and_recorded(tmp_path):
+    gm = "0 0 0\n5d-5 0 -980\n1\n2.5 1d8 .25d8 1d2 .5d2 27\n0 30 0 30 0\n1 2\n1\n0.5\n"
+    bc = decks.boundary("0 0 100 10 10", "1", "82", "1", "3 1 1.0 1 0 1 0")
+    deck, scene = converted(tmp_path, gm, bc)
+    assert scene.scene.control[0].record == (scene.scene.control[0].grain == 81)
+    start = deck.grains.discs.position[2].copy()
+    deck.advance(100)
+    # The way in steps of 0.01: 100 roundings of eps 30.
+    assert deck.grains.discs.position[2] - start == pytest.approx([1.0, 0.0], abs=100 * 30 * 2.3e-16)
+    far = decks.write(tmp_path / "far", gm, decks.boundary("0 0 100 10 10", "1", "83", "0"))
+    with pytest.raises(InputError, match=r"in_bc\.dat: line 3, recorded body 1 = 83: makes no sense, expected 1 to 82"):
+        read(far, Options())
 
 
 def apart(deck, scene, rows=slice(None)):

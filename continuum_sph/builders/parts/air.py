@@ -84,7 +84,15 @@ def air_report(out: Report, scene: Scene, law: Law, particles: int) -> None:
 
 
 def air_row(flow: PoreFlow) -> dict[str, float]:
-    """Mass of both fluids, what pore volume the air takes up, its pressures (above the room's) and how much is out."""
+    """Mass of both fluids, what pore volume the air takes up, its pressures (above the room's) and how much is out.
+
+    water: mass (kg/m) : per metre of depth
+    air: mass (kg/m) : per metre of depth
+    air: pore volume (m2) : what the air takes up
+    air: mean pressure (Pa) : by volume, above the room's
+    air: highest pressure (Pa) : above the room's
+    air: share that has left the soil () : of its mass
+    """
     layer, n = flow.layer, flow.layer.fluid
     air = layer.material[:n] == AIR
     mass, pressure = layer.mass[:n], layer.record[:n, P]

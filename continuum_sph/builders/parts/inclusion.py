@@ -63,7 +63,15 @@ def fill_inclusion(scene: Scene, law: Law, x: Floats, rho: Floats, material: NDA
 
 
 def inclusion_row(flow: Flow) -> dict[str, float]:
-    """Columns of the series: centre and mean velocity by volume, circularity, pieces of four particles and more."""
+    """Columns of the series: centre and mean velocity by volume, circularity, pieces of four particles and more.
+
+    bubble centre x (m) : centre of the second fluid, by volume
+    bubble centre (m) : height of its centre
+    bubble rise (m/s) : mean upward velocity, by volume
+    bubble area (m2) : its volume per metre of depth
+    bubble circularity () : perimeter of the circle of its area over its own; 1 for a circle
+    bubble pieces () : pieces of four particles and more
+    """
     layer, n = flow.layer, flow.layer.fluid
     own = layer.material[:n] == 1
     x, volume = layer.x[:n][own], layer.mass[:n][own] / layer.density[own]

@@ -86,7 +86,13 @@ def discharge(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float
 
 def mean_row(name: str, probe: ProbeSection, cloud: MeasuredWater, water: Floats) -> dict[str, float]:
     """Columns of a probe that is a rectangle: means of pressure (Pa) and velocity (m/s) over the water of the particles
-    in it, ``water`` (n,) m², and the share of the rectangle that is water."""
+    in it, ``water`` (n,) m², and the share of the rectangle that is water.
+
+    NAME mean pressure (Pa) : over the water in the rectangle
+    NAME mean velocity x (m/s) : over the water in the rectangle
+    NAME mean velocity y (m/s) : over the water in the rectangle
+    NAME fluid share () : volume of the water over the area of the rectangle
+    """
     assert probe.width is not None
     assert probe.height is not None
     off = np.abs(cloud.x - (probe.x, probe.y))
@@ -106,6 +112,10 @@ def probe_row(
     """Columns of probes.csv: pressure (Pa) and velocity (m/s) at each probe, or their means over a rectangle.
 
     share (n,): of each particle's volume that is water.
+
+    NAME pressure (Pa) : at the point, by the straight line through the particles about it
+    NAME velocity x (m/s) : at the point
+    NAME velocity y (m/s) : at the point
     """
     row: dict[str, float] = {}
     for k, probe in enumerate(probes):
@@ -121,7 +131,10 @@ def probe_row(
 
 
 def level_row(levels: tuple[LevelSection, ...], cloud: MeasuredWater) -> dict[str, float]:
-    """Columns of levels.csv: height of the water surface at each level, m."""
+    """Columns of levels.csv: height of the water surface at each level, m.
+
+    NAME (m) : height of the water's surface in the strip of the level
+    """
     return {f"{level.name or f'level {k}'} (m)": surface_height(level, cloud) for k, level in enumerate(levels)}
 
 

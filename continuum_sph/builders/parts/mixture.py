@@ -71,7 +71,11 @@ class MixturePart(Part):
         require_step(both.next_step, limits, rules, layer.x, layer.acceleration, layer.density, now)
 
     def row(self) -> dict[str, float]:
-        """Seepage, and the work of drag."""
+        """Seepage, and the work of drag.
+
+        fastest seepage (m/s) : largest speed of the water against the soil, times porosity
+        heat of drag (J/m) : what drag between water and soil has turned into heat, since the start
+        """
         flow = self.flow.water
         slip, inside = np.hypot(flow.slip[:, 0], flow.slip[:, 1]), flow.porosity < 1.0
         return {
@@ -139,13 +143,19 @@ class PoreInstruments(Part):
         self.probes, self.levels, self.flow, self.width = scene.probe, scene.level, flow, scene.inner[0]
 
     def row(self) -> dict[str, float]:
-        """Mass of the water in pores."""
+        """Mass of the water in pores.
+
+        water in pores (kg/m) : mass of the water that lies in soil
+        """
         flow, n = self.flow, self.flow.layer.fluid
         inside = (flow.porosity < 1.0) & (flow.layer.material[:n] == 0)
         return {"water in pores (kg/m)": float(flow.layer.mass[:n][inside].sum())}
 
     def tables(self) -> dict[str, dict[str, float]]:
-        """A row of each table of the instruments."""
+        """A row of each table of the instruments.
+
+        NAME discharge (m2/s) : flow of water to the right through the section of the level
+        """
         flow, layer, law, n = self.flow, self.flow.layer, self.flow.law, self.flow.layer.fluid
         there = (layer.mass[:n] > 0.0) & (layer.material[:n] != GAS)
         volume = layer.mass[:n] / (flow.porosity * layer.density)

@@ -28,7 +28,10 @@ def places(width: float, spacing: float) -> Floats:
 
 
 def phreatic_row(cloud: MeasuredWater) -> dict[str, float]:
-    """A row of phreatic.csv: heights (m) of the water's surface now, 0 where there is none."""
+    """A row of phreatic.csv: heights (m) of the water's surface now, 0 where there is none.
+
+    surface at X m (m) : height of the water's surface at X, in soil too; 0 where there is no water
+    """
     x = places(cloud.width, cloud.spacing)
     breadth = max(2.0 * PITCH * cloud.spacing, cloud.width / len(x))
     strips = (LevelSection(name="", x=float(at), breadth=breadth) for at in x)

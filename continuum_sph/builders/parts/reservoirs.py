@@ -37,7 +37,12 @@ class ReservoirPart(Part):
                 )  # fmt: skip
 
     def row(self) -> dict[str, float]:
-        """Level, and mass let in and out, of each."""
+        """Level, and mass let in and out, of each.
+
+        NAME level (m) : height of the reservoir's water
+        NAME let in (kg/m) : mass that it has let into the tank
+        NAME let out (kg/m) : mass that it has taken out
+        """
         row = {}
         for it in self.supply.reservoirs:
             row[f"{it.name} level (m)"] = it.level

@@ -34,7 +34,10 @@ class ExitGradientPart(Part):
         self.pile, self.flow, self.weight = pile, flow, weight
 
     def row(self) -> dict[str, float]:
-        """The column of the exit gradient i_E at the sheet pile."""
+        """The column of the exit gradient i_E at the sheet pile.
+
+        exit gradient () : hydraulic gradient upwards where water leaves the ground beside the pile
+        """
         return {NAME: exit_gradient(self.pile, self.flow, self.weight)}
 
 

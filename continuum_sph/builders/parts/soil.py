@@ -93,7 +93,26 @@ class SoilPart(Part):
         return moved
 
     def row(self) -> dict[str, float]:
-        """Columns of the soil: position, motion, stress, and how the step was chosen."""
+        """Columns of the soil: position, motion, stress, and how the step was chosen.
+
+        front (m) : right edge of the foremost particle of soil
+        highest soil (m) : upper edge of the highest particle
+        largest displacement (m) : of any particle since the start
+        mean displacement (m) : of all particles since the start
+        displacement of 95 % (m) : which 95 % of the particles do not exceed
+        fastest (m/s) : largest speed of a particle
+        kinetic energy (J/m) : per metre of depth
+        potential energy (J/m) : per metre of depth, from the floor
+        momentum x (kg/s) : per metre of depth
+        stress upright over weight () : sum of V σ_yy over that of m g y; 1 at rest, free at the top
+        stress across over upright () : ratio of the mean stresses, K0 at rest
+        plastic strain () : mean plastic shear strain
+        volume (m2) : of the soil, per metre of depth
+        share come apart () : share of the volume that opened where the soil came apart
+        mass (kg/m) : per metre of depth
+        stops at walls () : how often a particle was stopped at a wall, since the start
+        steps limited by RULE () : number of steps whose length sound, acceleration or the other layers decided
+        """
         flow, soil, n = self.flow, self.flow.soil, self.flow.soil.soil
         half, gravity = 0.5 * flow.law.spacing, -flow.law.gravity[1]
         x, v, mass, stress = soil.x[:n], soil.v[:n], soil.mass[:n], soil.stress[:n]

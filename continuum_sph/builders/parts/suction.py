@@ -150,7 +150,18 @@ class MoisturePart(Part):
         require_within(filling, Range("filling of pores", "", 0.0, FULLEST), np.arange(soil.soil), soil.x, now)
 
     def row(self) -> dict[str, float]:
-        """Columns of the water in pores, and the levels outside."""
+        """Columns of the water in pores, and the levels outside.
+
+        water in pores (kg/m) : mass per metre of depth
+        water from reservoirs (kg/m) : what has come in since the start
+        water seeped out (kg/m) : what has left into the air since the start
+        mean saturation () : by volume of the soil
+        least saturation () : of any particle
+        largest suction (Pa) : of any particle
+        largest pore pressure (Pa) : of any particle, above the room's
+        stages of flow () : stages of the flow's own steps, since the start
+        NAME level (m) : height of the water outside
+        """
         flow, state = self.flow, self.flow.water.state
         saturation, volume = self.saturation(), flow.volume
         totals = flow.water.content.sum(axis=0)

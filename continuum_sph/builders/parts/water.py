@@ -90,7 +90,19 @@ class WaterPart(Part):
         require_step(flow.next_step, limits, RULES, layer.x, layer.acceleration, layer.density, now)
 
     def row(self) -> dict[str, float]:
-        """Columns of the water: position and energies."""
+        """Columns of the water: position and energies.
+
+        front (m) : right edge of the foremost particle of water
+        highest water (m) : upper edge of the highest particle
+        mean height (m) : of the centre of mass
+        NAME (J/m) : kinetic, potential, compressive energy; with output.energy the budget of water/energy_budget.py
+        momentum x (kg/s) : of the water, per metre of depth
+        fastest (m/s) : largest speed of a particle
+        densest (kg/m3) : largest density of a particle
+        mass (kg/m) : of the water, per metre of depth
+        particles outside () : particles that have left the tank
+        stops at walls () : how often a particle was stopped at a wall, since the start
+        """
         layer, tait = self.flow.layer, water_state(self.scene)
         n, half = layer.fluid, 0.5 * self.scene.numerics.spacing
         x, v, mass = layer.x[:n], layer.v[:n], layer.mass[:n]
@@ -157,7 +169,10 @@ class WaterSteps(Part):
         self.flow = flow
 
     def row(self) -> dict[str, float]:
-        """Number of steps that each stability criterion has limited."""
+        """Number of steps that each stability criterion has limited.
+
+        steps limited by RULE () : number of steps whose length sound, acceleration, viscosity or capillarity decided
+        """
         return {f"steps limited by {rule} ()": float(k) for rule, k in zip(RULES, self.flow.limited, strict=True)}
 
 

@@ -70,6 +70,9 @@ def written(value: Any) -> str:
 
 def options(schema: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """The alternatives of a schema, itself where it has none; those of lists are their entries."""
+    if "properties" in schema:  # what may stand beside it says only which keys go together
+        yield schema
+        return
     for one in schema.get("anyOf", [schema]):
         if one is not schema and "anyOf" in one:
             yield from options(one)

@@ -72,7 +72,12 @@ class WallPlaces:
         self.sides, self.walls = moving_sides(domain), dict(zip(wall_names(walls), walls, strict=True))
 
     def row(self, grains: Grains) -> dict[str, float]:
-        """Places, m, and the direction of those that turn, rad."""
+        """Places, m, and the direction of those that turn, rad.
+
+        NAME x (m) : where the moving wall is
+        NAME y (m) : where the moving wall is
+        NAME direction of normal (rad) : of a wall that turns, from the x axis
+        """
         row: dict[str, float] = {}
         for name, wall in zip(grains.wall_names, grains.walls, strict=True):
             it = self.walls.get(name)

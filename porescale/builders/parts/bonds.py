@@ -127,7 +127,11 @@ class BondsPart(Part):
         return [body for body in bodies if inside(body)]
 
     def row(self) -> Row:
-        """Columns of the bonds in series.csv."""
+        """Columns of the bonds in series.csv.
+
+        bonds () : bonds that hold
+        broken bonds () : bonds that have broken since they were made
+        """
         bonds = self.grains.bonds
         there = 0 if bonds is None else int(np.sum(bonds.back > 0.0))
         whole = 0 if bonds is None else bonds.count

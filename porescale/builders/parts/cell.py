@@ -34,7 +34,19 @@ class CellPart(Part):
 
     def row(self) -> Row:
         """Columns of the series: strain (logarithms of the stretch of the edges; shear), the stress of the last step
-        (compression positive, shear of the sign of the strain that it drives), and the cell."""
+        (compression positive, shear of the sign of the strain that it drives), and the cell.
+
+        strain xx () : logarithm of the stretch of the cell's width, > 0 longer
+        strain yy () : logarithm of the stretch of its height, > 0 taller
+        strain xy () : shear of the cell since the start
+        stress xx (Pa) : of the last step, compression > 0
+        stress yy (Pa) : of the last step, compression > 0
+        shear stress (Pa) : of the last step, of the sign of the strain that it drives
+        cell width (m) : of the periodic cell now
+        cell height (m) : of the periodic cell now
+        cell tilt (m) : how far the upper edge has moved along the lower one
+        solid fraction () : area of the grains over that of the cell; overlaps count twice
+        """
         grains = self.grains
         (width, _), (tilt, height) = grains.steering.edges()
         xx, xy, yy = grains.steering.cell_pressure()

@@ -18,6 +18,13 @@ class ControlPart(Part):
         """control.csv: displacement since the start, forces of contacts and of the control.
 
         Forces are means over the last step of the model.
+
+        NAME displacement x (m) : since the start; likewise y
+        NAME displacement rotation (rad) : since the start
+        NAME contact force x (N/m) : of contacts on the body; likewise y
+        NAME contact moment (N m/m) : of contacts about its centre or pivot
+        NAME control force x (N/m) : what the control gives; likewise y
+        NAME control moment (N m/m) : what the control gives
         """
         row: Row = {"time (s)": self.clock.time}
         for name, line in zip(self.recorded, self.grains.steering.record(), strict=False):

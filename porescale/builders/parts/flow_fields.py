@@ -17,7 +17,10 @@ LAMBDA = "hydraulic radius ratio ()"
 
 
 def ratio_column(grains: Grains | None) -> dict[str, float]:
-    """That column, of a scene whose grains have a hydraulic radius ratio; else none."""
+    """That column, of a scene whose grains have a hydraulic radius ratio; else none.
+
+    hydraulic radius ratio () : radius that the fluid sees, over that of the grain
+    """
     return {LAMBDA: grains.hydraulic_radius_ratio} if grains and grains.hydraulic_radius_ratio else {}
 
 
@@ -32,7 +35,14 @@ def total_pressure(gravity: tuple[float, float], scales: Scales, excess: Reals) 
 
 
 def fluid_row(excess: Reals, ux: Reals, uy: Reals, solid: Reals, scales: Scales) -> dict[str, float]:
-    """Columns of the series for the fluid between the grains; arrays (ny, nx), SI."""
+    """Columns of the series for the fluid between the grains; arrays (ny, nx), SI.
+
+    kinetic energy of fluid (J/m) : of the fluid between the grains, per metre of depth
+    largest fluid speed (m/s) : in any cell
+    Mach number () : that speed over the lattice's speed of sound
+    lowest relative density () : in any cell, over the density at rest; below 1 where the fluid is thinned
+    highest relative density () : in any cell, over the density at rest
+    """
     square = ux**2 + uy**2
     energy = 0.5 * float(np.sum((scales.density + excess) * square * (1 - solid))) * scales.spacing**2
     return {

@@ -53,6 +53,12 @@ class FlowInstruments(Part):
         return tables
 
     def _probe_row(self, probes: Sampler, fields: Fields) -> Row:
+        """Columns of probes.csv of probes that are points.
+
+        NAME pressure (Pa) : with its hydrostatic part, which is zero in the upper left corner of the box; in fluid
+        NAME velocity x (m/s) : at the point, to the right
+        NAME velocity y (m/s) : at the point, up
+        """
         excess, ux, uy, solid = fields
         p, u, v = (
             probes.in_fluid(total_pressure(self.gravity, self.fluid.scales, excess), solid),
@@ -67,7 +73,13 @@ class FlowInstruments(Part):
         return row
 
     def _mean_row(self, fields: Fields) -> Row:
-        """Means over the fluid in rectangles; the hydrostatic part is exact where they cut cells, too."""
+        """Means over the fluid in rectangles; the hydrostatic part is exact where they cut cells, too.
+
+        NAME mean pressure (Pa) : over the fluid in the rectangle
+        NAME mean velocity x (m/s) : over the fluid in the rectangle
+        NAME mean velocity y (m/s) : over the fluid in the rectangle
+        NAME fluid share () : share of the rectangle that is fluid
+        """
         excess, ux, uy, solid = fields
         (gx, gy), s = self.gravity, self.fluid.scales
         top = excess.shape[0] * s.spacing
@@ -83,7 +95,11 @@ class FlowInstruments(Part):
         return row
 
     def _flux_row(self, fields: Fields) -> Row:
-        """Fluxes of the volume at the density of rest: of mass, in a steady flow the same through every section."""
+        """Fluxes of the volume at the density of rest: of mass, in a steady flow the same through every section.
+
+        NAME volume flux (m²/s) : of the fluid through it, > 0 to the right on the way from its start to its end
+        NAME flux of solid (m²/s) : of the grains through it, as the fluid sees them
+        """
         excess, ux, uy, _ = fields
         relative = 1 + excess / self.fluid.scales.density
         flow, solid = (ux * relative, uy * relative), self.coupled.solid_flow() if self.coupled else None
@@ -123,6 +139,15 @@ class Loading:
         The load of the last step, that of the fluid inside taken back, and what a body force, the pressure gradient
         that it stands for, does on the area of the body; buoyancy by gravity is not in it (the lattice solves for the
         reduced pressure).
+
+        NAME force x (N/m) : of the fluid on the body, without buoyancy by gravity
+        NAME force y (N/m) : of the fluid on the body, without buoyancy by gravity
+        NAME torque (N m/m) : of the fluid about the body's centre
+        NAME drag coefficient () : force along loads.direction over ½ ρ U² L
+        NAME lift coefficient () : force across it, to its left, over the same
+        ring force x (N/m) : of the fluid on the ring
+        ring force y (N/m) : of the fluid on the ring
+        ring torque (N m/m) : of the fluid on the ring, about its centre
         """
         loads, coupled = self.loads, self.coupled
         grains = disc_count(coupled.grains) - self.held
@@ -147,7 +172,11 @@ class Loading:
 
 
 def rectangle_loads(numbers: Sequence[int], coupled: Coupled) -> Row:
-    """Forces of the fluid and of the grains on rectangles by number, columns of loads.csv."""
+    """Forces of the fluid and of the grains on rectangles by number, columns of loads.csv.
+
+    rectangle K force AXIS (N/m) : of the fluid on the rectangle, in x and y
+    rectangle K force of grains AXIS (N/m) : of the grains on it, in x and y
+    """
     row: Row = {}
     for k in numbers:
         fluid, grains = coupled.rectangle_force[k], coupled.grains.rectangle_force[k]

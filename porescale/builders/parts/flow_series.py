@@ -14,7 +14,10 @@ class FlowSeries(Part):
         self.fluid, self.first = system.part(FluidPart), ratio_column(system.scene.grains)
 
     def row(self) -> Row:
-        """Columns of the fluid in series.csv."""
+        """Columns of the fluid in series.csv.
+
+        fluid mass change () : since the start, over the mass of a box full of fluid
+        """
         part, lattice = self.fluid, self.fluid.fluid
         change = (lattice.mass_excess() - part.mass) / (lattice.nx * lattice.ny)
         return {**fluid_row(*part.fields(), part.scales), **self.first, "fluid mass change ()": change}

@@ -82,7 +82,15 @@ class GrainInstruments(Part):
 
     def _forces(self, found: Contacts, walls: WallPlaces) -> Row:
         """Force of the grains on every wall, plate and rectangle with its moment about the middle of it (a free wall:
-        about its point), where walls are that move, and of all contacts on every held disc, about its centre."""
+        about its point), where walls are that move, and of all contacts on every held disc, about its centre.
+
+        NAME force x (N/m) : of the grains on the wall, plate or rectangle
+        NAME force y (N/m) : of the grains on it
+        NAME moment (N m/m) : of the grains about its middle, of a free wall about its point
+        disc K force x (N/m) : of all contacts on the held disc
+        disc K force y (N/m) : of all contacts on it
+        disc K moment (N m/m) : of all contacts about its centre
+        """
         grains = self.grains
         row: Row = {}
         points = middles(grains)
@@ -194,6 +202,33 @@ def region_row(
     (``placed``) take their exact area, and move with their corners;
     coordination and rattlers are of discs and clumps whose centre is inside, held ones left out; fabric and forces of
     contacts whose point is inside.
+
+    porosity () : share of the region that is no grain
+    void ratio () : pores over grains
+    stress xx (Pa) : of contacts, by branch and force over the region's area; compression > 0
+    stress yy (Pa) : the same, upright
+    stress xy (Pa) : the same; the first index is that of the force
+    stress yx (Pa) : the same
+    mean stress (Pa) : half of the sum of the principal stresses
+    deviator stress (Pa) : half of their difference
+    major stress direction (rad) : of the largest compression, from the x axis
+    kinetic stress xx (Pa) : of the grains' velocities about their mean
+    kinetic stress yy (Pa) : the same, upright
+    kinetic stress xy (Pa) : the same
+    coordination number () : mean, of discs and clumps whose centre is inside
+    share of rattlers () : share of the grains that carry nothing
+    contacts () : number whose point is inside
+    fabric anisotropy () : a of the density of directions of contacts (1 + a cos 2(theta - direction))/(2 pi)
+    fabric direction (rad) : to which most contacts point, from the x axis
+    mean normal force (N/m) : of the contacts inside
+    largest over mean normal force () : of the contacts inside
+    share of sliding contacts () : share of the contacts inside whose friction is at its limit
+    velocity x (m/s) : mean of the grains, by mass
+    velocity y (m/s) : the same, up
+    strain rate xx (1/s) : of the best affine motion; extension > 0
+    strain rate yy (1/s) : the same, upright
+    strain rate xy (1/s) : the same, half of the rate of shear
+    rotation (rad/s) : of the best affine motion, anticlockwise
     """
     d, period = grains.discs, grains.period
     bodies, number = as_bodies(grains), body_of(grains)

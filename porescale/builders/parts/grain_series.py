@@ -42,7 +42,18 @@ class GrainSeries(Part):
         return float((x - r).min() if self.leftward else (x + r).max())
 
     def row(self) -> Row:
-        """Columns of the grains in series.csv."""
+        """Columns of the grains in series.csv.
+
+        front (m) : foremost edge of any grain, on the side to which the packing can flow
+        run-out (m) : how far the front has come since the start
+        centre of mass x (m) : of the grains, from the left side
+        centre of mass y (m) : of the grains, from the bottom
+        highest grain (m) : highest point of any grain, frames included
+        kinetic energy of grains (J/m) : of translation and rotation, per metre of depth
+        largest grain speed (m/s) : of the centre of any grain
+        largest overlap over diameter () : deepest contact now, over the diameter
+        coordination number () : mean number of other bodies that touch one
+        """
         discs, front = self.free(), self.front()
         x, y = centre_of_mass(discs)
         return {

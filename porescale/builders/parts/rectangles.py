@@ -53,7 +53,11 @@ class RectanglesPart(Part):
             self.made_good += coupled.saturated.restore_mass(coupled.fluid)
 
     def row(self) -> Row:
-        """Columns of the series, in fluid."""
+        """Columns of the series, in fluid.
+
+        fluid in with rectangles (m²) : area of fluid that moving rectangles have let in through sides, since the start
+        of it taken out again (m²) : what rectangle.make_good has taken out since the start
+        """
         coupled = self.coupled
         if coupled is None:
             return {}

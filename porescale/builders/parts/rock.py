@@ -22,7 +22,12 @@ class RockPart(Part):
         self.recorded = len(system.recorded) - 2
 
     def tables(self) -> dict[str, Row]:
-        """rock.csv; stress is the mean of both plates over the last step, > 0 tension."""
+        """rock.csv; stress is the mean of both plates over the last step, > 0 tension.
+
+        strain () : of the sample's length between the plates, > 0 longer
+        stress (Pa) : mean of both plates over the last step, tension > 0
+        broken bonds () : since they were made
+        """
         one, other = self.grains.steering.record()[self.recorded :]
         stress = 0.5 * (one.contact[self.axis] - other.contact[self.axis]) / self.height
         strain = (other.displacement[self.axis] - one.displacement[self.axis]) / self.length

@@ -22,7 +22,11 @@ class SleepPart(Part):
         self.sleepers = grains.sleep = Sleepers(grains, size, section.share, section.after)
 
     def row(self) -> Row:
-        """Columns of the sleeping grains in series.csv."""
+        """Columns of the sleeping grains in series.csv.
+
+        grains asleep () : number of grains that sleep now
+        energy taken by sleep (J/m) : kinetic energy that falling asleep took away, since the start
+        """
         return {
             "grains asleep ()": float(self.sleepers.count),
             "energy taken by sleep (J/m)": float(self.sleepers.removed.sum()),

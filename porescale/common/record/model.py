@@ -45,6 +45,9 @@ class Grid:
         array: AnyArray = _named(self.cells, name, "this grid")
         return array
 
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.cells)
+
     def __repr__(self) -> str:
         left, right, bottom, top = self.extent
         ny, nx = self.shape
@@ -79,6 +82,9 @@ class Cloud:
     def __getitem__(self, name: str) -> AnyArray:
         array: AnyArray = _named({"position": self.position, **self.data}, name, "this cloud")
         return array
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(("position", *self.data))
 
     def __repr__(self) -> str:
         shown = {"position": self.position, **self.data}

@@ -180,6 +180,25 @@ def energy_budget(grains: State, acceleration: tuple[float, float] = (0.0, 0.0))
     their work.  "turned over" is half the sum of all changes: every joule leaves one entry and enters another.
     A strained cell does work, and all is said relative to it: there must be no ``acceleration`` then.  Raises
     InputError where no budget is kept.
+
+    kinetic energy of translation (J/m) : of all discs
+    kinetic energy of rotation (J/m) : of all discs
+    potential energy (J/m) : in the field of gravity
+    elastic energy, normal (J/m) : stored in normal springs of contacts and in bonds
+    elastic energy, tangential (J/m) : stored in tangential springs
+    elastic energy, rolling (J/m) : stored in rolling springs
+    lost in normal dashpots (J/m) : since the budget began
+    lost in tangential dashpots (J/m) : since the budget began
+    lost in friction (J/m) : in sliding contacts, since the budget began
+    lost in rolling dashpots (J/m) : since the budget began
+    lost in rolling friction (J/m) : since the budget began
+    lost to background drag (J/m) : since the budget began
+    work of external forces (J/m) : other than gravity, such as those of the fluid, since the budget began
+    work of moving surfaces (J/m) : of walls, plates and rectangles, since the budget began
+    work of holders (J/m) : of what holds or drives bodies, since the budget began
+    work of the cell (J/m) : of the strain of a periodic cell, since the budget began
+    residual (J/m) : what does not close: energy now less that at the begin, plus losses, less works
+    turned over (J/m) : half of the sum of all changes, to hold the residual against
     """
     budget, start, dt = grains.budget, grains.budget_start, grains.last_dt
     if budget is None:

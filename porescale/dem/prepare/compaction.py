@@ -226,7 +226,12 @@ def out_of_balance(grains: Grains) -> float:
 
 
 def write_packing(path: Path, position: Floats, radius: Floats) -> None:
-    """Write x, y, radius (m) to a .csv or .h5 file, whole or absent.  Raises InputError for another suffix."""
+    """Write x, y, radius (m) to a .csv or .h5 file, whole or absent.  Raises InputError for another suffix.
+
+    x (m) : of the grain's centre
+    y (m) : of the grain's centre
+    radius (m) : of the grain
+    """
     table = np.column_stack((position, radius))
     if path.suffix == ".csv":
         text = io.StringIO()

@@ -55,6 +55,13 @@ def run(folder):
     return porescale.open_run(folder)
 
 
+def test_grids_and_clouds_say_their_arrays():
+    shown = snapshot(0)
+    assert set(shown["grains"]) == {"position", "radius", "velocity"}
+    assert list(shown["fields"]) == ["velocity", "pressure"]
+    assert all(len(shown["grains"][name]) == 3 for name in shown["grains"])
+
+
 def test_snapshots_by_number_slice_and_in_turn(run):
     assert len(run) == 4
     assert run[-1].step == run[3].step == 300
