@@ -12,7 +12,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 ROOT = Path(__file__).resolve().parents[2]
-RECORD, TABLES = ROOT / "docs" / "evidence" / "rows.json", ROOT / "docs" / "validations.md"
+RECORD = ROOT / "docs" / "evidence" / "rows.json"
 HEAD = ("row", "compared with", "reference", "measured", "error", "tolerance")
 MOST = 4
 """Numbers of a list that a cell shows."""
@@ -26,19 +26,13 @@ def text(value: Any, count: int | None = None) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def recorded() -> tuple[Path, dict[str, list[str]]]:
-    """The file of the record and the cells of every row, by its name."""
-    if RECORD.is_file():
-        found = {}
-        for row in json.loads(RECORD.read_text(encoding="utf-8")):
-            numbers = [text(row[key], row.get("of")) for key in ("reference", "measured", "error", "tolerance")]
-            found[row["name"]] = [row["name"], row["source"], *numbers]
-        return RECORD, found
-    lines = (line for line in TABLES.read_text(encoding="utf-8").splitlines() if line.startswith("| "))
-    cells = (
-        [cell.strip().replace("\\|", "|") for cell in line.replace("\\|", "\0").split("|")[1:-1]] for line in lines
-    )
-    return TABLES, {row[0]: [cell.replace("\0", "|") for cell in row] for row in cells if len(row) == len(HEAD)}
+def recorded() -> dict[str, list[str]]:
+    """The cells of every row that is recorded, by its name."""
+    found = {}
+    for row in json.loads(RECORD.read_text(encoding="utf-8")):
+        numbers = [text(row[key], row.get("of")) for key in ("reference", "measured", "error", "tolerance")]
+        found[row["name"]] = [row["name"], row["source"], *numbers]
+    return found
 
 
 class RowsDirective(SphinxDirective):
@@ -48,8 +42,8 @@ class RowsDirective(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """The table; a warning at a name that the record has not."""
-        path, known = recorded()
-        self.env.note_dependency(str(path))
+        known = recorded()
+        self.env.note_dependency(str(RECORD))
         names = [name for line in self.content for name in line.split()]
         missing = [name for name in names if name not in known]
         group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in HEAD), cols=len(HEAD))
