@@ -23,6 +23,7 @@ PACKAGE = Package.of(
     benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
     case=Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column",
     extremes=discovered(BENCHMARKS, "EXTREMES"),
+    convergence=discovered("continuum_sph.validation", "LADDERS"),
     endurance=discovered(BENCHMARKS, "ENDURANCES"),
     parts=discovered(BENCHMARKS, "KINDS"),
 )

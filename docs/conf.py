@@ -27,6 +27,7 @@ extensions = [
     "sphinx_design",
     "docs._ext.mathml",
     "docs._ext.docstring",
+    "docs._ext.rows",
     "docs._ext.folders",
     "docs._ext.made",
 ]

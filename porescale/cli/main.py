@@ -51,6 +51,7 @@ PACKAGE = Package.of(
     benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
     case=Path(__file__).resolve().parents[2] / "cases" / "column_collapse",
     stability=discovered(BENCHMARKS, "STABILITY"),
+    convergence=discovered("porescale.validation", "LADDERS"),
     endurance=discovered(BENCHMARKS, "ENDURANCES"),
     parts=discovered(BENCHMARKS, "KINDS"),
     also={demseg.PACKAGE: demseg.show},

@@ -46,11 +46,11 @@ def recorded(case: str, row: str, digits: int = 4) -> Callable[[], str]:
 
 
 def validated(name: str) -> Callable[[], str]:
-    """What the table of validations has measured in a row."""
+    """What the tables of validations have measured in a row."""
 
     def found() -> str:
-        table = (ROOT / "docs" / "validations.md").read_text(encoding="utf-8")
-        line = next(line for line in table.splitlines() if line.startswith(f"| {name} |"))
+        text = (ROOT / "docs" / "evidence" / "dem.md").read_text(encoding="utf-8")
+        line = next(line for line in text.splitlines() if line.startswith(f"| {name} |"))
         return line.split(" | ")[3].strip()
 
     return found

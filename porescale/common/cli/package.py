@@ -15,6 +15,7 @@ from porescale.common.api.program import Program
 if TYPE_CHECKING:
     from porescale.common.core.types import AnyArray
     from porescale.common.evidence.benchmarks import Benchmarks
+    from porescale.common.evidence.convergence import Ladders
     from porescale.common.evidence.endurance import Endurances
     from porescale.common.evidence.extremes import Extremes
     from porescale.common.evidence.overhead import SceneKinds
@@ -29,8 +30,9 @@ class Package(Program):
     summary : one line for --help;  template : gives the commented scene.toml that `new` writes;
     also : the same as show for runs of other commands, by the names in their cards;
     validations, benchmarks : give the registers;  case : folder of a case whose front `bench` measures again, or None;
-    stability : flows of a stability map;  extremes : tries of `study extremes`;  endurance : flows of `study
-    endurance`;  parts : scenes of `study parts`;  each None if there are none;
+    stability : flows of a stability map;  extremes : tries of `study extremes`;  convergence : ladders of `study
+    convergence`;  endurance : flows of `study endurance`;  parts : scenes of `study parts`;  each None if there are
+    none;
     features : what trade studies read of a run folder at a time (None: its last snapshot), by name, None if there is
     nothing.
     """
@@ -42,6 +44,7 @@ class Package(Program):
     case: Path | None = None
     stability: Callable[[], Stability] | None = None
     extremes: Callable[[], Extremes] | None = None
+    convergence: Callable[[], Ladders] | None = None
     endurance: Callable[[], Endurances] | None = None
     parts: Callable[[], SceneKinds] | None = None
     also: Mapping[str, Callable[[Path], Iterable[Path]]] = field(default_factory=dict)

@@ -1,4 +1,5 @@
-"""`study …`: what accuracy costs (trade, levels), where to trust it (stability, extremes, endurance), and parts."""
+"""`study …`: what accuracy costs (trade, levels), where to trust it (stability, extremes, convergence, endurance), and
+parts."""
 
 import json as json_text
 import time
@@ -21,8 +22,8 @@ def command(package: Package) -> App:
     app = App(name="study", help="Measure what accuracy costs, and where it can be trusted.")
     app.command(trade.command(package))
     app.command(_levels(package))
-    offered = {_stability: package.stability, _extremes: package.extremes, _endurance: package.endurance,
-               _parts: package.parts}  # fmt: skip
+    offered = {_stability: package.stability, _extremes: package.extremes, _convergence: package.convergence,
+               _endurance: package.endurance, _parts: package.parts}  # fmt: skip
     for study, register in offered.items():
         if register is not None:
             app.command(study(package))
@@ -128,6 +129,51 @@ def _stability(package: Package) -> Callable[..., int]:
         return 0
 
     return stability
+
+
+def _convergence(package: Package) -> Callable[..., int]:
+    """The `study convergence` command."""
+
+    def convergence(
+        *names: Annotated[str, Parameter(help="ladders, or topics for all of theirs; all if not given")],
+        out: Annotated[str, Parameter(help="folder of convergence.json, .md, and a .png for each topic")] = (
+            "runs/convergence"
+        ),
+        list_: List = False,
+        threads: Threads = 1,
+        json: Json = False,
+    ) -> int:
+        """Run experiments with known answers at several resolutions: errors, and the order at which they fall.
+
+        Ladders that are not named stay in the files as they were.  Exit code 1 if an order does not hold.
+        """
+        from porescale.common.evidence import convergence_files as study
+        from porescale.common.record.card import commit
+
+        assert package.convergence is not None
+        register = package.convergence()
+        ladders = register.chosen(names)
+        if list_:
+            print("\n".join(f"{it.name}: {it.title}" for it in ladders))
+            return 0
+        folder = output_folder(out)
+        use_threads(threads)
+        kept, made = study.stored(folder), []
+        about = circumstances(package, _command_line(package, "convergence", ()), threads or 1)
+        source = commit()
+        for it in ladders:
+            made.append(it.run())
+            mark = {"date": about["date"], "commit": source["hash"][:8] if source else ""}
+            kept[it.name] = made[-1].as_dict() | mark
+            say(f"{it.name}: order {study.number(made[-1].measured)} ({made[-1].seconds:.1f} s)")
+        study.write(folder, about, [kept[it.name] for it in register if it.name in kept])
+        if json:
+            print_json(row.as_dict() for row in made)
+        else:
+            print(f"{len(made)} ladders; {folder / study.NAME}.md, .png of each topic")
+        return 1 if any(row.holds is False for row in made) else 0
+
+    return convergence
 
 
 def _endurance(package: Package) -> Callable[..., int]:

@@ -1,12 +1,20 @@
 """`verify [NAME…]`: the validations."""
 
-from collections.abc import Callable
-from typing import Annotated
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from porescale.common.cli.folders import output_folder
 from porescale.common.cli.options import Json, List, Threads, print_json, say, use_threads
 from porescale.common.cli.package import Package
+
+if TYPE_CHECKING:
+    from porescale.common.evidence.validations import Row, Validation
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -14,12 +22,16 @@ def command(package: Package) -> Callable[..., int]:
 
     def verify(
         *names: Annotated[str, Parameter(help="validations, or rooms for all of theirs; all if not given")],
+        out: Annotated[str | None, Parameter(help="folder for verify.json, .md, and a figure of each topic")] = None,
         slow: Annotated[bool, Parameter(alias="--all", help="the slow ones too")] = False,
         list_: List = False,
         threads: Threads = None,
         json: Json = False,
     ) -> int:
-        """Run validations: reference, measured, error, tolerance and its reason.  Exit code 1 if one fails."""
+        """Run validations: reference, measured, error, tolerance and its reason.  Exit code 1 if one fails.
+
+        With --out, rows that are not run stay in the files as they were.
+        """
         register = package.validations()
         if list_:
             for item in register.chosen(names, slow=True):
@@ -32,6 +44,8 @@ def command(package: Package) -> Callable[..., int]:
             rows.append(item.run())
             verdict = "pass" if rows[-1].passed else "FAIL"
             say(f"{verdict} {item.name} ({rows[-1].seconds:.1f} s)")
+        if out is not None:
+            _keep(output_folder(out), list(register), rows)
         failed = sum(not row.passed for row in rows)
         if json:
             print_json(row.as_dict() for row in rows)
@@ -47,3 +61,15 @@ def command(package: Package) -> Callable[..., int]:
         return 1 if failed else 0
 
     return verify
+
+
+def _keep(folder: Path, register: Sequence[Validation], rows: Sequence[Row]) -> None:
+    """Put rows into the files in ``folder`` beside those that other runs left, in the order of the register."""
+    from porescale.common.evidence import validation_files as files
+    from porescale.common.record.card import commit
+
+    known, source = files.stored(folder / f"{files.NAME}.json"), commit()
+    mark = {"date": datetime.now(UTC).date().isoformat(), "commit": source["hash"][:8] if source else ""}
+    topics = {item.name: {"topic": item.topic} for item in register}
+    known |= {row.name: row.as_dict() | topics[row.name] | mark for row in rows}
+    files.write(folder, [known[name] for name in topics if name in known])

@@ -77,8 +77,9 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def png(figure: Figure, dpi: int) -> bytes:
-    """The figure as a PNG file that does not name the version of the library."""
+def png(figure: Figure, dpi: int, drawn_of: str = "") -> bytes:
+    """The figure as a PNG file that does not name the version of the library.  drawn_of : kept as its description."""
     out = io.BytesIO()
-    figure.savefig(out, format="png", dpi=dpi, metadata={"Software": None})
+    named = {"Description": drawn_of} if drawn_of else {}
+    figure.savefig(out, format="png", dpi=dpi, metadata={"Software": None} | named)
     return out.getvalue()

@@ -83,6 +83,13 @@ class Validation:
     slow: bool
     measure: Callable[[], Measured]
 
+    @property
+    def topic(self) -> str:
+        """The folder of ``validation`` that it stands in, else the first part of its name."""
+        _, inside, path = str(self.measure.__module__).partition(".validation.")
+        folder, deeper, _ = path.partition(".")
+        return folder if inside and deeper else self.name.partition(".")[0]
+
     def run(self) -> Row:
         """Measure once.  An exception counts as failed, with its text in ``because``; nan never passes."""
         start = time.perf_counter()

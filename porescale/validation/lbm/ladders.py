@@ -1,0 +1,80 @@
+"""Convergence of the fluid: flows with exact answers at several resolutions."""
+
+import numpy as np
+
+from porescale.common.evidence.convergence import Ladders
+from porescale.validation.lbm.channels import OTHER_MAGIC, VISCOSITIES, poiseuille, taylor_green
+from porescale.validation.lbm.own_forces import kolmogorov, swinging
+
+LADDERS = Ladders()
+
+
+@LADDERS.ladder(
+    "lbm.poiseuille_at_magic_1",
+    title="Largest error of a parabola between walls over its peak, magic parameter 1; 3/16 is exact",
+    along="cells between the walls",
+    levels=(5, 10, 20, 40),
+    expected=2.0,
+    within=1e-6,
+    because="(16/3 - 1)/H² exactly (Ginzburg & d'Humieres 2003); round-off is 1e-12 of it",
+)
+def parabola(cells: float) -> float:
+    """Slip of half-way bounce-back."""
+    found, exact = poiseuille(int(cells), VISCOSITIES[1], OTHER_MAGIC)
+    return float(np.abs(found - exact).max())
+
+
+@LADDERS.ladder(
+    "lbm.taylor_green",
+    title="Root mean square error of velocity of vortices that a uniform flow carries, over that of the exact field",
+    along="cells in a wave",
+    levels=(16, 32, 64, 128),
+    expected=2.0,
+    within=0.1,
+    because="diffusive scaling; the next term is of fourth order, 1.5 % of 16's own error: 0.01 of the order",
+)
+def vortices(cells: float) -> float:
+    """Two relaxation times."""
+    return taylor_green(int(cells))
+
+
+@LADDERS.ladder(
+    "lbm.taylor_green_central_moments",
+    title="As for the vortices above, by central moments",
+    along="cells in a wave",
+    levels=(16, 32, 64, 128),
+    expected=2.0,
+    within=0.1,
+    because="as above",
+)
+def vortices_by_central_moments(cells: float) -> float:
+    """Central moments."""
+    return taylor_green(int(cells), operator="central")
+
+
+@LADDERS.ladder(
+    "lbm.kolmogorov_flow",
+    title="Error of the amplitude of the steady flow under a force a sin(k y) of every cell",
+    along="cells in a wave",
+    levels=(8, 16, 32, 64),
+    expected=2.0,
+    within=0.1,
+    because="(k h)²/24 at magic 3/16; the next term is 0.1 (k h)² of it, 0.06 at 8 cells",
+)
+def steady_wave(cells: float) -> float:
+    """Amplitude over a/(nu k²), less 1."""
+    return abs(kolmogorov(int(cells)))
+
+
+@LADDERS.ladder(
+    "lbm.womersley_channel",
+    title="Largest error of velocity in a channel under a force that oscillates, over its largest velocity",
+    along="cells between the walls",
+    levels=(16, 32, 64),
+    expected=2.0,
+    within=0.1,
+    because="the next term is of fourth order: a tenth of the error at 16 cells",
+)
+def oscillating_channel(cells: float) -> float:
+    """Womersley number 4.5."""
+    return swinging(int(cells))

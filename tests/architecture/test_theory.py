@@ -1,0 +1,117 @@
+"""Pages on theory name what there is: docstrings, files with their functions, rows of validations, equations."""
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from porescale.common.evidence.register import discovered
+from tests.architecture.sources import ROOT
+
+PAGES = sorted((ROOT / "docs" / "theory").glob("*.md"))
+DOCSTRING = re.compile(r"^```\{docstring\} (\S+)$", re.MULTILINE)
+FILE = re.compile(r"`((?:porescale|continuum_sph|tests|docs|cases)/[\w/.]+?)(?:::([\w.]+))?`")
+ROWS = re.compile(r"^```\{rows\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+ROW = re.compile(r"`((?:lbm|dem|coupling|piv|scene|continuum)\.\w+)`")
+LABEL = re.compile(r"^\$\$ \(([\w-]+)\)$", re.MULTILINE)
+QUOTED = re.compile(r"\{eq\}`([\w-]+)`")
+
+
+@cache
+def tree(path: Path) -> ast.Module:
+    """The syntax of a source file."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def node_of(path: Path, names: list[str]) -> ast.AST | None:
+    """What a dotted name within a file is bound to; None if there is no such name."""
+    node: ast.AST = tree(path)
+    for name in names:
+        found = [it for it in getattr(node, "body", []) if name in bound(it)]
+        if not found:
+            return None
+        node = found[-1]
+    return node
+
+
+def bound(node: ast.AST) -> list[str]:
+    """Names that a statement binds."""
+    if isinstance(node, ast.Assign | ast.AnnAssign):
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        return [it.id for target in targets for it in ast.walk(target) if isinstance(it, ast.Name)]
+    return [getattr(node, "name", "")]
+
+
+def without_docstring(name: str, root: Path = ROOT) -> bool:
+    """Whether a dotted name of a module, class or function has no docstring to show."""
+    parts = name.split(".")
+    for count in range(len(parts), 0, -1):
+        base = root.joinpath(*parts[:count])
+        for path in (base.with_suffix(".py"), base / "__init__.py"):
+            if path.is_file():
+                node = node_of(path, parts[count:])
+                kinds = ast.Module | ast.ClassDef | ast.FunctionDef
+                return not (isinstance(node, kinds) and ast.get_docstring(node))
+    return True
+
+
+def missing_files(page: str, root: Path = ROOT) -> list[str]:
+    """Files, and names within files, that a page names and that there are not."""
+    wrong = []
+    for name, inner in FILE.findall(page):
+        path = root / name
+        if not path.exists() or (inner and node_of(path, inner.split(".")) is None):
+            wrong.append(f"{name}::{inner}" if inner else name)
+    return wrong
+
+
+def rows_named(page: str) -> list[str]:
+    """Rows of validations that a page names, in lists and in text."""
+    return [it for block in ROWS.findall(page) for it in block.split()] + ROW.findall(page)
+
+
+@cache
+def rows() -> set[str]:
+    """Names of all rows that ``verify`` has."""
+    found = [discovered(f"{package}.validation", "VALIDATIONS")() for package in ("porescale", "continuum_sph")]
+    return {row.name for each in found for row in each}
+
+
+def equations_astray(page: str) -> list[str]:
+    """Equations that a page refers to and does not have, and labels that it has twice."""
+    labels = LABEL.findall(page)
+    return [it for it in QUOTED.findall(page) if it not in labels] + [it for it in labels if labels.count(it) > 1]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda it: it.stem)
+def test_a_page_names_what_there_is(page):
+    text = page.read_text(encoding="utf-8")
+    assert [name for name in DOCSTRING.findall(text) if without_docstring(name)] == []
+    assert missing_files(text) == []
+    assert [name for name in rows_named(text) if name not in rows()] == []
+    assert equations_astray(text) == []
+
+
+def test_every_page_is_in_the_map():
+    index = (ROOT / "docs" / "theory" / "index.md").read_text(encoding="utf-8")
+    contents = re.findall(r"^\w+$", index.split("```{toctree}")[1], re.MULTILINE)
+    assert sorted(contents) == [it.stem for it in PAGES if it.stem != "index"]
+
+
+def test_labels_of_equations_are_of_one_page_each():
+    labels = [it for page in PAGES for it in LABEL.findall(page.read_text(encoding="utf-8"))]
+    assert len(labels) == len(set(labels)) > 20
+
+
+def test_wrong_names_are_found(tmp_path):  # the checks that must fail
+    (tmp_path / "porescale").mkdir()
+    (tmp_path / "porescale" / "a.py").write_text("X = 1\n\n\ndef f():\n    pass\n\n\nclass C:\n    'c'\n")
+    assert without_docstring("porescale.a.f", tmp_path)
+    assert without_docstring("porescale.b", tmp_path)
+    assert not without_docstring("porescale.a.C", tmp_path)
+    page = "`porescale/a.py` `porescale/a.py::X` `porescale/a.py::C.m` `porescale/b.py`"
+    assert missing_files(page, tmp_path) == ["porescale/a.py::C.m", "porescale/b.py"]
+    assert rows_named("```{rows}\nlbm.one\ndem.two\n```\nand `lbm.three`") == ["lbm.one", "dem.two", "lbm.three"]
+    assert equations_astray("$$\nx\n$$ (one)\n{eq}`one` {eq}`two`") == ["two"]

@@ -1,0 +1,1 @@
+"""Figures of docs/evidence that are drawn of what cases keep."""

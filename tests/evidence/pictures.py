@@ -1,0 +1,111 @@
+"""Figures of docs/evidence drawn of what cases keep: recorded runs of all, and OpenPIV beside ours."""
+
+import hashlib
+import json
+import math
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from porescale.common.evidence import files
+from porescale.common.evidence.validation_files import BLUE, NEAR, ORANGE, RED
+from tests.architecture.sources import ROOT
+
+PAIRS = ROOT / "cases" / "piv_synthetic" / "README.md"
+"""Has the table of errors beside OpenPIV, which its script writes."""
+
+
+def records(root: Path = ROOT) -> dict[str, list[tuple[str, float]]]:
+    """(recorded - expected)/tolerance of each number of each case that has a recorded run, with its name."""
+    found: dict[str, list[tuple[str, float]]] = {}
+    for file in sorted((root / "cases").glob("*/recorded.json")):
+        expected: list[dict[str, Any]] = tomllib.loads((file.parent / "expected.toml").read_text("utf-8"))["expected"]
+        numbers = json.loads(file.read_text("utf-8"))["numbers"]
+        found[file.parent.name] = [
+            (row["name"], (numbers[row["name"]] - row["value"]) / row["tolerance"] if row["tolerance"] else 0.0)
+            for row in expected
+            if row["name"] in numbers
+        ]
+    return found
+
+
+def digest(drawn: dict[str, Any]) -> str:
+    """What tells whether a figure was drawn of these numbers."""
+    text = json.dumps(drawn, default=list)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def cases_picture(found: dict[str, list[tuple[str, float]]]) -> bytes:
+    """A line for each case, a dot for each of its numbers, in two columns, as a PNG."""
+    names = list(found)
+    half = math.ceil(len(names) / 2)
+    figure = files.new_figure(10.0, 1.0 + 0.2 * half)
+    columns = figure.subplots(1, 2)
+    for axes, mine in zip(columns, (names[:half], names[half:]), strict=True):
+        for at in range(0, half, 2):
+            axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
+        for at, name in enumerate(mine):
+            for _, share in found[name]:
+                size = abs(share)
+                marker, colour = ("o", BLUE) if size <= NEAR else ("D", ORANGE) if size <= 1 else ("X", RED)
+                axes.plot(max(-1.3, min(1.3, share)), at, marker, color=colour, ms=4, mew=0, alpha=0.85, zorder=3)
+        for edge in (-1.0, 1.0):
+            axes.axvline(edge, color="black", lw=1.0)
+            axes.axvspan(edge, 1.35 * edge, color="#dddddd", lw=0, zorder=1)
+        axes.axvline(0.0, color="#999999", lw=0.8, zorder=1)
+        axes.set_xlim(-1.35, 1.35)
+        axes.set_ylim(half - 0.5, -0.5)
+        axes.set_yticks(range(len(mine)), [name.replace("_", " ") for name in mine], fontsize=7.5)
+        axes.set_xlabel("(recorded - expected) / tolerance", fontsize=8.5)
+        axes.tick_params(axis="y", length=0)
+        axes.tick_params(axis="x", labelsize=8)
+        axes.spines[["top", "right", "left"]].set_visible(False)
+    return files.png(figure, 100, digest(found))
+
+
+Pairs = list[tuple[str, list[float]]]
+
+
+def pairs(text: str) -> Pairs:
+    """Rows of the table of errors: name; px, px of OpenPIV, stated px, seconds, seconds of OpenPIV (those that are)."""
+    found = []
+    for line in re.findall(r"^\| (.+?) \|\s*$", text, re.MULTILINE):
+        name, *cells = (cell.strip() for cell in line.split("|"))
+        if len(cells) == 5 and re.fullmatch(r"[\d.]+", cells[1]):
+            found.append((name, [float(cell) for cell in cells if cell]))
+    return found
+
+
+def peers_picture(rows: Pairs) -> bytes:
+    """Errors and times of both, a line for each pair, as a PNG."""
+    figure = files.new_figure(10.0, 1.3 + 0.24 * len(rows))
+    left, right = figure.subplots(1, 2, sharey=True, width_ratios=[1.6, 1.0])
+    looks = (("o", BLUE, "porescale"), ("s", ORANGE, "OpenPIV 0.26.1"))
+    for axes, columns in ((left, (0, 1)), (right, (3, 4))):
+        for at, (_, numbers) in enumerate(rows):
+            if at % 2 == 0:
+                axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
+            if len(numbers) > max(columns):
+                values = [numbers[column] for column in columns]
+                axes.plot(values, [at, at], color="#999999", lw=1.0, zorder=2)
+                for value, (marker, colour, label) in zip(values, looks, strict=True):
+                    axes.plot(value, at, marker, color=colour, ms=6, zorder=3, label=label if at == 0 else None)
+        axes.tick_params(labelsize=8)
+        axes.tick_params(axis="y", length=0)
+        axes.spines[["top", "right", "left"]].set_visible(False)
+        axes.grid(True, axis="x", color="#d8d8d8", lw=0.6)
+    left.set_xscale("log")
+    left.set_xlabel("rms error of a component, px (log scale)", fontsize=8.5)
+    right.set_xlim(0, None)
+    right.set_xlabel("processor time of a pair, s", fontsize=8.5)
+    left.set_yticks(range(len(rows)), [name for name, _ in rows], fontsize=8)
+    left.set_ylim(len(rows) - 0.5, -0.5)
+    left.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=8, frameon=False, ncols=2)
+    return files.png(figure, 100, digest(dict(rows)))
+
+
+def write(folder: Path) -> None:
+    """Write cases.png and peers.png into ``folder``."""
+    (folder / "cases.png").write_bytes(cases_picture(records()))
+    (folder / "peers.png").write_bytes(peers_picture(pairs(PAIRS.read_text(encoding="utf-8"))))
