@@ -35,13 +35,14 @@ def build(out: Path, quiet: bool = True) -> tuple[int, str, float]:
 
 
 class Page(HTMLParser):
-    """The anchors of a page, what it links to, and what it loads."""
+    """The anchors of a page, what it links to, what it loads, and styles in it that load from the network."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
         self.anchors: set[str] = set()
         self.links: list[str] = []
         self.loads: list[str] = []
+        self.styles: list[str] = []
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -52,15 +53,15 @@ class Page(HTMLParser):
         if given.get(LOADED.get(tag, "")) and not (tag == "link" and given.get("rel", "") in NO_LOAD):
             self.loads.append(given[LOADED[tag]])
         if STYLE_URL.search(given.get("style", "")):
-            self.loads.append(given["style"])
+            self.styles.append(given["style"])
 
 
 def from_elsewhere(site: Path) -> Iterator[str]:
     """Pages and styles that load something from the network, with what."""
     for path in sorted(site.rglob("*.html")):
-        for load in Page(path.read_text(encoding="utf-8")).loads:
-            if urlsplit(load).netloc or load.startswith("//"):
-                yield f"{path.relative_to(site)}: {load}"
+        page = Page(path.read_text(encoding="utf-8"))
+        for load in [it for it in page.loads if urlsplit(it).netloc] + page.styles:
+            yield f"{path.relative_to(site)}: {load}"
     for path in sorted(site.rglob("*.css")):
         if STYLE_URL.search(path.read_text(encoding="utf-8")):
             yield f"{path.relative_to(site)}: {STYLE_URL.pattern}"

@@ -6,11 +6,12 @@ import pytest
 
 import continuum_sph
 import porescale
-from docs._ext.made import columns, commands, filled, messages, names, scene_keys
+from docs._ext.made import columns, commands, filled, gallery, messages, names, scene_keys
 from docs._ext.made.columns import Column
 from porescale.common.schema.messages import every_key
 from tests.architecture.sources import exports
 from tests.architecture.test_readme import KNOWN
+from tests.reference.folders import ROOT
 
 PACKAGES = {"porescale": porescale, "continuum_sph": continuum_sph}
 
@@ -77,3 +78,13 @@ def test_a_page_is_filled():
     assert "porescale run" in filled("# x\n\n<!-- made: commands porescale -->\n")
     with pytest.raises(KeyError):
         filled("<!-- made: nothing at all -->\n")
+
+
+def test_every_topic_of_cases_has_a_page():
+    pages = [path.read_text(encoding="utf-8") for path in (ROOT / "docs" / "gallery").glob("*.md")]
+    wanted = {title for page in pages for title in re.findall(r"^<!-- made: gallery (.*) -->$", page, re.MULTILINE)}
+    assert wanted == set(gallery.topics())
+    shown = {case for lines in gallery.topics().values() for cases, _ in lines for case in cases}
+    assert shown == {path.parent.name for path in (ROOT / "cases").glob("*/README.md")}
+    assert "picture.png" in gallery.entry("piston", "a piston")
+    assert "porescale run cases/piston" in gallery.entry("piston", "a piston")
