@@ -1,4 +1,4 @@
-"""Pages on theory name what there is: docstrings, files with their functions, rows of validations, equations."""
+"""Pages on theory name what there is: docstrings, files with their functions, rows, equations, works."""
 
 import ast
 import re
@@ -17,6 +17,7 @@ ROWS = re.compile(r"^```\{rows\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 ROW = re.compile(r"`((?:lbm|dem|coupling|piv|scene|continuum)\.\w+)`")
 LABEL = re.compile(r"^\$\$ \(([\w-]+)\)$", re.MULTILINE)
 QUOTED = re.compile(r"\{eq\}`([\w-]+)`")
+CITED = re.compile(r"^Sources: \[([^\]]+)\]\(sources\.md\)\.$", re.MULTILINE)
 
 
 @cache
@@ -85,6 +86,17 @@ def equations_astray(page: str) -> list[str]:
     return [it for it in QUOTED.findall(page) if it not in labels] + [it for it in labels if labels.count(it) > 1]
 
 
+def without_source(page: str, sources: str) -> list[str]:
+    """Works that the last line of a page cites and no line of the list of ``sources`` has, by first name and year."""
+    wrong = []
+    for work in [it.strip() for each in CITED.findall(page) for it in each.replace("\n", " ").split(";")]:
+        name, years = re.split(r"[ ,']", work)[0], re.findall(r"\b\d{4}\b", work)
+        lines = [line for line in sources.splitlines() if name in line]
+        if not lines or any(all(year not in line for line in lines) for year in years):
+            wrong.append(work)
+    return wrong
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda it: it.stem)
 def test_a_page_names_what_there_is(page):
     text = page.read_text(encoding="utf-8")
@@ -92,6 +104,7 @@ def test_a_page_names_what_there_is(page):
     assert missing_files(text) == []
     assert [name for name in rows_named(text) if name not in rows()] == []
     assert equations_astray(text) == []
+    assert without_source(text, (ROOT / "docs" / "theory" / "sources.md").read_text(encoding="utf-8")) == []
 
 
 def test_every_page_is_in_the_map():
@@ -115,3 +128,4 @@ def test_wrong_names_are_found(tmp_path):  # the checks that must fail
     assert missing_files(page, tmp_path) == ["porescale/a.py::C.m", "porescale/b.py"]
     assert rows_named("```{rows}\nlbm.one\ndem.two\n```\nand `lbm.three`") == ["lbm.one", "dem.two", "lbm.three"]
     assert equations_astray("$$\nx\n$$ (one)\n{eq}`one` {eq}`two`") == ["two"]
+    assert without_source("Sources: [Who & Else 1999; Who 2000](sources.md).\n", "- Who, A. 1999: a") == ["Who 2000"]

@@ -1,1 +1,1 @@
-"""Figures of docs/evidence that are drawn of what cases keep."""
+"""Figures of docs/evidence that are drawn of what cases and studies keep."""

@@ -1,4 +1,4 @@
-"""Figures of docs/evidence drawn of what cases keep: recorded runs of all, and OpenPIV beside ours."""
+"""Figures of docs/evidence drawn of what others keep: recorded runs of cases, OpenPIV beside ours, endurance."""
 
 import hashlib
 import json
@@ -105,7 +105,48 @@ def peers_picture(rows: Pairs) -> bytes:
     return files.png(figure, 100, digest(dict(rows)))
 
 
+Lasting = list[tuple[str, float, float]]
+
+
+def lasting(root: Path = ROOT) -> Lasting:
+    """Name, largest change and what is allowed of each quantity of both endurance studies, but for what was found
+    wrong, which is a count."""
+    found = []
+    for folder in ("endurance", "endurance_continuum"):
+        file = root / "docs" / folder / "endurance.json"
+        for line in json.loads(file.read_text(encoding="utf-8"))["lines"]:
+            if not line["quantity"].startswith("found wrong"):
+                found.append((f"{line['flow']}: {line['quantity'].removesuffix(' ()')}", line["off"], line["allowed"]))
+    return found
+
+
+def endurance_picture(rows: Lasting) -> bytes:
+    """A line for each quantity, its largest change over what is allowed, as a PNG; where none is allowed 0 is 0."""
+    figure = files.new_figure(9.0, 1.0 + 0.19 * len(rows))
+    axes = figure.subplots()
+    least = 1e-6
+    for at, (_, off, allowed) in enumerate(rows):
+        if at % 2 == 0:
+            axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
+        share = off / allowed if allowed else math.inf if off else 0.0
+        marker, colour = ("<", BLUE) if share < least else ("o", BLUE) if share <= 1 else ("X", RED)
+        axes.plot(min(max(share, least), 5.0), at, marker, color=colour, ms=5, zorder=3, clip_on=False)
+    axes.axvline(1.0, color="black", lw=1.0)
+    axes.axvspan(1.0, 5.0, color="#dddddd", lw=0, zorder=1)
+    axes.set_xscale("log")
+    axes.set_xlim(least, 5.0)
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set_yticks(range(len(rows)), [name for name, _, _ in rows], fontsize=7.5)
+    axes.set_xlabel(f"largest change / allowed (triangle: none, or less than {least:g})", fontsize=8.5)
+    axes.tick_params(axis="y", length=0)
+    axes.tick_params(axis="x", labelsize=8)
+    axes.grid(True, axis="x", color="#d8d8d8", lw=0.6)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    return files.png(figure, 100, digest({"rows": rows}))
+
+
 def write(folder: Path) -> None:
-    """Write cases.png and peers.png into ``folder``."""
+    """Write cases.png, peers.png and endurance.png into ``folder``."""
+    (folder / "endurance.png").write_bytes(endurance_picture(lasting()))
     (folder / "cases.png").write_bytes(cases_picture(records()))
     (folder / "peers.png").write_bytes(peers_picture(pairs(PAIRS.read_text(encoding="utf-8"))))

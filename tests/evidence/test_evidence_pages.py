@@ -10,7 +10,7 @@ from PIL import Image
 
 from continuum_sph.cli import PACKAGE as CONTINUUM
 from porescale.cli.main import PACKAGE as PORESCALE
-from porescale.common.evidence import convergence_files, validation_files
+from porescale.common.evidence import convergence_files, overhead, validation_files
 from porescale.common.evidence.convergence import Row
 from tests.architecture.sources import ROOT
 from tests.evidence import pictures
@@ -78,6 +78,23 @@ def test_the_figure_beside_openpiv_is_of_the_table_of_its_case() -> None:
     assert len(rows) > 10
     assert all(len(numbers) in (2, 5) for _, numbers in rows)
     assert described((EVIDENCE / "peers.png").read_bytes()) == pictures.digest(dict(rows)), AGAIN
+
+
+def test_the_figure_of_endurance_is_of_both_studies() -> None:
+    rows = pictures.lasting()
+    assert len({name for name, _, _ in rows}) == len(rows) > 30
+    kept = described((EVIDENCE / "endurance.png").read_bytes())
+    assert kept == pictures.digest({"rows": rows}), AGAIN
+    assert kept != pictures.digest({"rows": rows[1:]})  # the check that must fail
+
+
+@pytest.mark.parametrize("folder", ["parts", "parts_continuum"])
+def test_the_figure_of_parts_is_of_the_times_that_are_kept(folder: str, tmp_path: Path) -> None:
+    file = ROOT / "docs" / folder / "parts.json"
+    about = json.loads(file.read_text(encoding="utf-8"))
+    overhead.write(tmp_path, about, [overhead.Row(**row) for row in about.pop("rows")])
+    drawn = described((tmp_path / "parts.png").read_bytes())
+    assert drawn == described((file.parent / "parts.png").read_bytes()) != ""
 
 
 def test_departures_have_a_tolerance_where_the_error_is_theirs() -> None:

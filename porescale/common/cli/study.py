@@ -226,7 +226,7 @@ def _parts(package: Package) -> Callable[..., int]:
 
     def parts(
         *names: Annotated[str, Parameter(help="kinds of scenes; all if not given")],
-        out: Annotated[str, Parameter(help="folder of parts.json and .md")] = "runs/parts",
+        out: Annotated[str, Parameter(help="folder of parts.json, .md and .png")] = "runs/parts",
         rounds: Annotated[int, Parameter(help="in which each is timed in turns with what it is held against")] = 15,
         list_: List = False,
         json: Json = False,

@@ -5,6 +5,8 @@ held against in turns, so that a busy machine slows both alike, and writes a tab
 which stand still while others have the core.
 """
 
+import hashlib
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -122,8 +124,38 @@ class SceneKinds(Register[SceneKind]):
 
 
 def write(folder: Path, about: Mapping[str, Any], rows: Sequence[Row]) -> None:
-    """parts.json and parts.md into ``folder``, each whole or not at all.  about : command, machine, date."""
-    files.write_study(folder, NAME, json=files.json_text(map(asdict, rows), about), md=markdown(about, rows))
+    """parts.json, .md and .png into ``folder``, each whole or not at all.  about : command, machine, date."""
+    files.write_study(
+        folder, NAME, json=files.json_text(map(asdict, rows), about), md=markdown(about, rows), png=picture(rows)
+    )
+
+
+def picture(rows: Sequence[Row]) -> bytes:
+    """A line for each kind as a PNG: its time over that of what it is held against."""
+    figure = files.new_figure(9.0, 1.2 + 0.22 * len(rows))
+    axes = figure.subplots()
+    looks = ((True, "o", "#0072B2", "beside the smallest kernel"), (False, "s", "#E69F00", "beside a scene without it"))
+    for smallest, marker, colour, label in looks:
+        mine = [(row.ratio, at) for at, row in enumerate(rows) if (row.beside == SMALLEST) is smallest]
+        if mine:
+            ratios, places = zip(*mine, strict=True)
+            axes.hlines(places, 1.0, ratios, color=colour, lw=1.5)
+            axes.plot(ratios, places, marker, color=colour, ms=5, label=label)
+    for at in range(0, len(rows), 2):
+        axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
+    axes.axvline(1.0, color="black", lw=1.0)
+    axes.axvline(DEARER, color="black", lw=0.8, ls=":")
+    names = [row.name if row.beside == SMALLEST else f"{row.name} (beside {row.beside})" for row in rows]
+    axes.set_yticks(range(len(rows)), names, fontsize=8)
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set_xlabel(f"time over that of what it is held against (dotted: {DEARER:g})", fontsize=8.5)
+    axes.tick_params(axis="x", labelsize=8)
+    axes.tick_params(axis="y", length=0)
+    axes.grid(True, axis="x", color="#d8d8d8", lw=0.6)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=8, frameon=False, ncols=2)
+    text = json.dumps([[row.name, row.beside, row.ratio] for row in rows])
+    return files.png(figure, 100, hashlib.sha256(text.encode()).hexdigest()[:16])
 
 
 def markdown(about: Mapping[str, Any], rows: Sequence[Row]) -> str:
@@ -132,7 +164,8 @@ def markdown(about: Mapping[str, Any], rows: Sequence[Row]) -> str:
         "# Only what a scene requires", "",
         f"Made by `{about.get('command', '')}`, {about.get('date', '')}, "
         f"{about.get('machine', {}).get('processor', '')}, one thread.",
-        "Times are the least over rounds in which both are timed in turns.",
+        "Times are the least over rounds in which both are timed in turns.", "",
+        f"![Time over that of what each is held against]({NAME}.png)",
     ]  # fmt: skip
     tables = {
         ("Scenes beside the smallest kernel that does the same", "smallest"): [r for r in rows if r.beside == SMALLEST],
