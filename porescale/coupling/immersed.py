@@ -73,21 +73,24 @@ def to_lattice(position, velocity, spin, spacing, step, centre, lattice_velocity
 
 
 @kernel
-def total_load(cells, units, velocity, spin, weight, response_share, step, inner, load):
+def total_load(cells, units, velocity, spin, given, response_share, step, inner, load):
     """What the fluid does to every body, the inner mass given back, and with the weight.
 
     cells: ``CellLoad``, lattice units, of ``units`` (4,) N/m, N m/m, kg/m, kg m²/m;  velocity (n, 2) m/s, spin (n,)
-    rad/s;  weight (n, 2) N/m;  response_share (n, 2): share of a change of force, and of torque, taken up in a step;
-    step s.  Overwrites velocity, spin and momentum of inner, ``InnerFluid``, and load, ``BodyLoad``.
+    rad/s;  given: weight and push, each (n, 2) N/m;  response_share (n, 2): share of a change of force, and of torque,
+    taken up in a step;  step s.  Overwrites velocity, spin and momentum of inner, ``InnerFluid``, and load,
+    ``BodyLoad``.
     """
     entrained = cells.entrained
+    weight, push = given
     for n in range(spin.shape[0]):
         mass, inertia = inner.mass[n], inner.inertia[n]
         follows = FOLLOWING * min(1.0, entrained[n, 0] * units[2] / mass) if mass > 0.0 else 1.0
         for a in range(2):
             change = follows * (velocity[n, a] - inner.velocity[n, a])
             load.fluid_force[n, a] = cells.force[n, a] * units[0] + mass * change / step
-            load.force[n, a] += response_share[n, 0] * (weight[n, a] + load.fluid_force[n, a] - load.force[n, a])
+            acting = weight[n, a] + (load.fluid_force[n, a] + push[n, a])
+            load.force[n, a] += response_share[n, 0] * (acting - load.force[n, a])
             inner.velocity[n, a] += change
             inner.momentum[n, a] += mass * change
         follows = FOLLOWING * min(1.0, entrained[n, 1] * units[3] / inertia) if inertia > 0.0 else 1.0
@@ -101,7 +104,8 @@ class Immersed:
     """Bodies in fluid, all discs or all polygons, as their equation of motion has them; SI units.
 
     weight (n, 2) N/m, less buoyancy;  response_share (n, 2);  inner_mass, inner_inertia (n,), inner_velocity,
-    inner_spin, inner_momentum: see ``InnerFluid``;  fluid_force, fluid_torque, force, torque: see ``BodyLoad``.
+    inner_spin, inner_momentum: see ``InnerFluid``;  push (n, 2) N/m: what the body force on the fluid does to
+    bodies, set by the owner before each ``respond``;  fluid_force, fluid_torque, force, torque: see ``BodyLoad``.
     """
 
     def __init__(
@@ -114,6 +118,7 @@ class Immersed:
         self.inner_velocity, self.inner_spin = velocity.copy(), spin.copy()
         self.inner_momentum = mass[:, None] * velocity
         self.fluid_force, self.fluid_torque = np.zeros((n, 2)), np.zeros(n)
+        self.push = np.zeros((n, 2))
         self.force, self.torque = np.zeros((n, 2)), np.zeros(n)
         self._inner = InnerFluid(
             self.inner_mass, self.inner_inertia, self.inner_velocity, self.inner_spin, self.inner_momentum
@@ -123,7 +128,7 @@ class Immersed:
     def respond(self, cells: CellLoad, units: Reals, velocity: Reals, spin: Reals, step: float) -> None:
         """The loads of a fluid step, from the cells' sums and the bodies' motion (m/s, rad/s); step: s."""
         total_load(
-            cells, units, velocity, spin, self.weight, self.response_share, step, self._inner, self._load
+            cells, units, velocity, spin, (self.weight, self.push), self.response_share, step, self._inner, self._load
         )  # fmt: skip
 
     def virtual_momentum(self, step: float) -> Reals:

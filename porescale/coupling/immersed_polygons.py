@@ -104,6 +104,7 @@ class ImmersedPolygons(Immersed):
         super().__init__(
             inner_mass, inner_inertia, clumps.velocity[self.first :], clumps.spin[self.first :], weight, share
         )
+        self._no_torque = np.zeros(len(mass))
 
     @property
     def _clumps(self) -> Clumps:
@@ -129,12 +130,14 @@ class ImmersedPolygons(Immersed):
         """(m,) rad/s, half a step back."""
         return self._clumps.spin[self.first :]
 
-    def distribute(self, force: Floats, torque: Floats, fluid_force: Floats, fluid_torque: Floats) -> None:
-        """Overwrite the corners' rows of these arrays (discs, 2), (discs,) with shares of the polygons' own."""
+    def distribute(self, discs: Immersed) -> None:
+        """Overwrite the corners' rows of force, torque and what the fluid does in ``discs`` with shares of the
+        polygons' own."""
         clumps, mass = self._clumps, self._grains.discs.mass
         for own, turning, rows, turns in (
-            (self.force, self.torque, force, torque),
-            (self.fluid_force, self.fluid_torque, fluid_force, fluid_torque),
+            (self.force, self.torque, discs.force, discs.torque),
+            (self.push, self._no_torque, discs.push, discs.fluid_torque),
+            (self.fluid_force, self.fluid_torque, discs.fluid_force, discs.fluid_torque),
         ):
             distribute_load(self.first, clumps.start, clumps.member, mass, clumps.mass, own, turning, rows, turns)
 

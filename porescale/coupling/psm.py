@@ -30,6 +30,7 @@ from porescale.coupling.coverage.shape import Shape
 from porescale.coupling.coverage.soft_rim import MARGIN, SoftRim
 from porescale.coupling.load import add_rows, half_step_correction
 from porescale.coupling.psm_kernels import AT_ONCE, RowWork, sweep
+from porescale.coupling.push import covered_area, held_area
 from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
 from porescale.coupling.solid.choose import solid_operator as solid_operator_of
 from porescale.coupling.weighting.choose import choose_weight, fitting_weight
@@ -61,8 +62,11 @@ class SaturatedCells:
     """Discs of given radii (cells), convex polygons, rectangles and rings that cover cells of the fluid.
 
     force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,
-    ring_torque: on the others, what the fluid inside them takes already given back;  entrained (n, 2): mass and moment
-    of inertia of the fluid that took the discs' velocity.  Discs cover cells with the radius ``covering_radius``.
+    ring_torque: on the others, what the fluid inside them takes already given back;  push (discs + polygons + others,
+    2): what the body force does to all of them, not in those loads (push.py);  beyond (of the same length): areas of
+    theirs, cells², that cover no cells but are pushed, set by the owner;  driven: whether there is a body
+    force;  entrained (n, 2): mass and moment of inertia of the fluid that took the discs' velocity.  Discs cover cells
+    with the radius ``covering_radius``.
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
     them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
     that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;
@@ -94,6 +98,7 @@ class SaturatedCells:
             choose_weight(fitting_weight(solid_operator, weighting), tau, dtype, soft=soft_rim),
             choose_solid(solid_operator, tau, third_order, dtype, soft=soft_rim),
         )
+        self._half_rate = 0.5 * third_order
         shift = self.operator.radius_shift * (tau - 0.5) * (1 / third_order - 0.5)
         self._set_covering_radius(shift)
         self.polygons = polygons
@@ -147,6 +152,8 @@ class SaturatedCells:
         """Arrays of the loads of ``count`` bodies, and what the body force on the fluid adds to each at once."""
         discs = len(self.radius)
         movers = discs + (self.polygons.count if self.polygons else 0)
+        self.push, self.driven = np.zeros((count, 2)), bool(force.any())
+        self.beyond, self._taken, self._drive = np.zeros(count), np.zeros(count), np.tile(force, (count, 1))
         self._load, self._entrained = np.zeros((count, 3)), np.zeros((count, 2))
         self.force, self.torque, self.entrained = self._load[:discs, :2], self._load[:discs, 2], self._entrained[:discs]
         self.polygon_load, self.polygon_entrained = self._load[discs:movers], self._entrained[discs:movers]
@@ -157,9 +164,21 @@ class SaturatedCells:
             self._direct[discs:movers] = -self.polygons.covered_area[:, None] * force
 
     def _follow_force(self, force: Reals, centre: Reals) -> None:
-        """What a body force of every cell (2, ny, nx) adds to discs at once: as if it were that at their centres."""
+        """What a body force of every cell (2, ny, nx) does to bodies at once: as if it were that at their centres."""
         x, y = (np.clip(centre[:, a].astype(np.int64), 0, self._shape[1 - a] - 1) for a in (0, 1))
-        self._direct[: len(self.radius)] = -np.pi * self.covering_radius[:, None] ** 2 * force[:, y, x].T
+        self.driven, self._drive[:] = True, force[:, y, x].T
+        discs = len(self.radius)
+        self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * self._drive[:discs]
+
+    def _push_bodies(self) -> None:
+        """What the body force would do to the fluid where the bodies are, which is theirs to bear (push.py)."""
+        where = self._patches, (self.periodic_x, self.periodic_y), self._shape
+        if self.operator.force_everywhere:
+            covered_area(*where, self._taken)
+        else:
+            held_area(*where, self._half_rate, self._laws[0], self._taken)
+        self._taken += self.beyond
+        np.multiply(self._taken[:, None], self._drive, out=self.push)
 
     @property
     def covered(self) -> Reals:
@@ -264,7 +283,7 @@ class SaturatedCells:
         """One fluid step with the bodies where they are; fills the loads."""
         motion = self._place(centre, velocity, spin)
         if fluid.force_field is not None:
-            self._follow_force(fluid.force_field, centre)
+            self._follow_force(fluid.force_field, motion.centre)
         if self.bodies:
             self.bodies.before(fluid, self._patches, self._shift, self._slow_load)
         fluid.advance(
@@ -272,6 +291,8 @@ class SaturatedCells:
             *self._laws,
         )  # fmt: skip
         self._sum_loads(fluid)
+        if self.driven:
+            self._push_bodies()
         if self.operator.half_step_correction:
             half_step_correction(self._load, self._entrained, self._direct, LOW_PASS, self._slow_load, self._shift)
 

@@ -41,9 +41,10 @@ class Coupled:
     inside is then that in the shrunk disc);  lubrication : whether films below ``film_gap`` cells are corrected,
     between the hydraulic radii.
 
-    After a step: fluid_force (n, 2) N/m and fluid_torque (n,) N m/m, films not included: drag and lift;  force (n, 2)
-    N/m, with the weight, and torque (n,) N m/m as the contact steps hold them;  contact_load(): of other discs, walls
-    and plates.
+    After a step: fluid_force (n, 2) N/m and fluid_torque (n,) N m/m, films not included: drag and lift;  push (n, 2)
+    N/m: what a body force on the fluid does to the discs (push.py), on the area of the mechanical radius;  force (n, 2)
+    N/m, with both and the weight, and torque (n,) N m/m as the contact steps hold them;  contact_load(): of other
+    discs, walls and plates.
     polygons : those among the frames of ``grains`` (immersed_polygons.py), None without; their corners, the last discs,
     have shares of force and torque, and none of the fluid inside.
     Held discs (grains.hold) go as the owner says; the fluid inside follows, ``inner_velocity`` and ``inner_spin``, and
@@ -83,6 +84,8 @@ class Coupled:
         covering[seen] = self.saturated.covering_radius * scales.spacing
         self.saturated.pairs = overlapping(grains, covering)
         self._displaced = displaced(grains, self.hydraulic_radius, scales.density)
+        whole, thin = (displaced(grains, r, 1.0).mass[seen] for r in (discs.radius, self.hydraulic_radius))
+        self.saturated.beyond[seen] = (whole - thin) / scales.spacing**2
         self._set_immersed(buoyant_weight(grains, scales.density, acceleration))
         self._centre, self._velocity = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
         self._spin = np.zeros(discs.count)
@@ -109,7 +112,7 @@ class Coupled:
         self.inner_mass, self.inner_inertia, self.inner_momentum = it.inner_mass, it.inner_inertia, it.inner_momentum
         self.inner_velocity, self.inner_spin = it.inner_velocity, it.inner_spin
         self.force, self.torque = it.force, it.torque
-        self.fluid_force, self.fluid_torque = it.fluid_force, it.fluid_torque
+        self.fluid_force, self.fluid_torque, self.push = it.fluid_force, it.fluid_torque, it.push
 
     def advance(self) -> None:
         """Advance by one fluid step and its contact steps."""
@@ -133,13 +136,17 @@ class Coupled:
             square = (wet.covering_radius / wet.radius) ** 2
             self.inner_mass[seen] = self._displaced.mass[seen] * square
             self.inner_inertia[seen] = self._displaced.inertia[seen] * square**2
+        if wet.driven:
+            np.multiply(wet.push[seen], self._units[0], out=self.push[seen])
         cells = CellLoad(wet.force, wet.torque, wet.entrained)
         self.immersed.respond(cells, self._units, discs.velocity, discs.spin[seen], step)
         if self.polygons:
             p = self.polygons
             cells = CellLoad(wet.polygon_load[:, :2], wet.polygon_load[:, 2], wet.polygon_entrained)
+            if wet.driven:
+                np.multiply(wet.push[seen.stop : seen.stop + p.polygons.count], self._units[0], out=p.push)
             p.respond(cells, self._units, p.velocity, p.spin, step)
-            p.distribute(self.force, self.torque, self.fluid_force, self.fluid_torque)
+            p.distribute(self.immersed)
 
     def _move_bodies(self) -> None:
         """The contact steps, under the load of the fluid step."""
@@ -164,14 +171,17 @@ class Coupled:
 
     @property
     def rectangle_force(self) -> Reals:
-        """Force of the fluid on the rectangles, (m, 2) N/m, the fluid inside them given back."""
-        return np.asarray(self.saturated.rectangle_force * self.scales.force)
+        """Force of the fluid on the rectangles with the push, (m, 2) N/m, the fluid inside them given back."""
+        wet = self.saturated
+        first = len(wet.push) - len(wet.ring_force) - len(wet.rectangle_force)
+        return np.asarray((wet.rectangle_force + wet.push[first:][: len(wet.rectangle_force)]) * self.scales.force)
 
     @property
     def ring_load(self) -> Reals:
-        """Force and torque of the fluid on the rings, (m, 3) N/m, N/m, N m/m, the fluid inside them given back."""
+        """Force, with the push, and torque of the fluid on the rings, (m, 3) N/m, N/m, N m/m, inside given back."""
         wet, s = self.saturated, self.scales
-        return np.column_stack((wet.ring_force * s.force, wet.ring_torque * s.torque))
+        force = wet.ring_force + wet.push[len(wet.push) - len(wet.ring_force) :]
+        return np.column_stack((force * s.force, wet.ring_torque * s.torque))
 
     def fields(self) -> tuple[Reals, Reals, Reals, Reals]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx).

@@ -15,6 +15,7 @@ from typing import Any
 import h5py
 
 from porescale.common.core.atomic import whole
+from porescale.common.core.seal import seal_of
 
 
 class Forgiving(io.RawIOBase):
@@ -72,8 +73,10 @@ class Forgiving(io.RawIOBase):
 
 
 @contextmanager
-def writing(path: Path, **options: Any) -> Iterator[h5py.File]:
+def writing(path: Path, *, seal: bool = False, **options: Any) -> Iterator[h5py.File]:
     """A new HDF5 file that appears at ``path`` on leaving without error; ``options`` as for `h5py.File`.
+
+    seal : whether it ends with a seal (seal.py).
 
     Raises OSError, with the file's name, when any write failed; then ``path`` is as it was.
     """
@@ -82,6 +85,8 @@ def writing(path: Path, **options: Any) -> Iterator[h5py.File]:
         try:
             with h5py.File(made, "w", **options) as file:
                 yield file
+            if seal and made.trouble is None:
+                made.write(seal_of(made, made.seek(0, os.SEEK_END)))
         finally:
             made.close()
         if made.trouble is not None:

@@ -197,7 +197,8 @@ class PairList:
         if bad >= 0:
             raise ValueError(f"point {bad}: position {x[bad].tolist()} m, reach {reach[bad]} m")
         cutoff = 2.0 * float(reach.max(initial=0.0)) + self.skin
-        self._check_periods(cutoff)
+        if self.count > 1:  # none or one has no partner, whatever the box
+            self._check_periods(cutoff)
         grid = self._sort(x[self._first :], reach[self._first :], cutoff)
         new = 1 - self._current
         old_start, old_partner, old_carried = self.start, self.partner, self.carried

