@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+import pydantic
+
 from continuum_sph.water.eos.register import offered
 from porescale.common.schema.sections import Section, quantity
 
@@ -24,6 +26,6 @@ class AirSection(Section):
 
     density: float = quantity("kg/m^3", 1.207, ge=1e-2, le=100, help="density under the pressure of the room")
     viscosity: float = quantity("Pa s", 1.810e-5, ge=1e-9, le=1e3, help="viscosity: air passes soil as much easier")
-    law: GasName = "adiabatic"
+    law: GasName = pydantic.Field(default="adiabatic", description="equation of state of the gas")
     pressure: float = quantity("Pa", 1e5, ge=1.0, le=1e9, help="pressure of the room")
     exponent: float = quantity("", 1.403, ge=1.01, le=3, help="ratio of the specific heats")

@@ -34,7 +34,7 @@ class InclusionSection(Section):
 
     density: float = quantity("kg/m^3", 1.207, ge=1e-2, le=1e5, help="density under the pressure of the air")
     viscosity: float = quantity("Pa s", 1.810e-5, ge=0, le=1e9, help="viscosity")
-    law: LawName = "adiabatic"
+    law: LawName = pydantic.Field(default="adiabatic", description="equation of state of the second fluid")
     sound_speed: float | None = quantity("m/s", None, ge=1e-3, le=1e6, help="speed of sound of a liquid")
     pressure: float = quantity("Pa", 1e5, ge=1e-3, le=1e9, help="pressure of the air, of a gas")
     exponent: float | None = quantity("", None, ge=1.01, le=20, help="exponent: 7 of a liquid, 1.403 of a gas")

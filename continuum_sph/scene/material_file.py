@@ -71,7 +71,7 @@ class MaterialFile(Section):
     strength: Strengths
     pores: Pores | None = None
     measured: dict[str, Known] = pydantic.Field(default_factory=dict)
-    made: dict[str, Any] = pydantic.Field(default_factory=dict)
+    made: dict[str, Any] = pydantic.Field(default_factory=dict, description="how the file was made")
 
 
 class Origin(Section):
@@ -80,11 +80,13 @@ class Origin(Section):
     The same file under another name, or in another place, is the same origin.
     """
 
-    file: str
-    sha256: str
-    intrinsic_permeability: float | None = quantity("m^2", None, gt=0)
-    measured: dict[str, tuple[float, float]] = pydantic.Field(default_factory=dict)
-    made: dict[str, Any] = pydantic.Field(default_factory=dict)
+    file: str = pydantic.Field(description="name of the material file")
+    sha256: str = pydantic.Field(description="SHA-256 of that file")
+    intrinsic_permeability: float | None = quantity("m^2", None, gt=0, help="permeability of the grains for any fluid")
+    measured: dict[str, tuple[float, float]] = pydantic.Field(
+        default_factory=dict, description="mean and standard error of each number"
+    )
+    made: dict[str, Any] = pydantic.Field(default_factory=dict, description="how the file was made")
 
     def __eq__(self, other: object) -> bool:
         """Whether all but the name of the file is equal."""

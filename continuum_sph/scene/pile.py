@@ -3,6 +3,8 @@
 import math
 from typing import Literal
 
+import pydantic
+
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Section, quantity
 
@@ -16,7 +18,7 @@ class SheetPileSection(Section):
 
     x: float = quantity("m", ge=0, le=1e5, help="where it stands; its column is the one that holds x")
     tip: float = quantity("m", ge=0, le=1e5, help="height of its lower end, to the nearest row")
-    faces: Literal["slip", "hold"] = "slip"
+    faces: Literal["slip", "hold"] = pydantic.Field(default="slip", description="whether the faces hold the soil")
 
     def column(self, spacing: float) -> float:
         """Middle (m) of the column of particles of a ``spacing`` (m) that stands for it."""

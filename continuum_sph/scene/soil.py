@@ -47,9 +47,13 @@ class SoilNumerics(Section):
     whatever the stiffness and the spacing are, and with it how far a tongue of soil slides.
     """
 
-    gradient: Literal["corrected", "plain"] = "corrected"
+    gradient: Literal["corrected", "plain"] = pydantic.Field(
+        default="corrected", description="gradients of the velocity"
+    )
     damping: float = quantity("", 0.2, ge=0, le=4, help="alpha of the damping")
-    damping_of: Literal["zig-zags", "approach"] = "zig-zags"
+    damping_of: Literal["zig-zags", "approach"] = pydantic.Field(
+        default="zig-zags", description="what the damping acts on"
+    )
     damping_viscosity: float | None = quantity("m^2/s", None, ge=0, le=1e6, help="alpha c h, in place of damping")
     stress_diffusion: float = quantity("", 100.0, ge=0, le=1000, help="diffusion of stress and volume per shear strain")
     restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="the same by sound: soil creeps")
@@ -73,7 +77,9 @@ class SoilSection(Section):
 
     files: ClassVar[tuple[str, ...]] = ("material",)
 
-    strength: Literal["critical", "peak"] = "critical"
+    strength: Literal["critical", "peak"] = pydantic.Field(
+        default="critical", description="which angles of the material file hold"
+    )
     origin: Origin | None = None
     density: float = quantity("kg/m^3", 1590.0, ge=1, le=1e5, help="of grains per whole volume: (1 - n) times theirs")
     porosity: float = quantity("", 0.4, ge=0, le=0.99, help="porosity at the start")
@@ -82,19 +88,23 @@ class SoilSection(Section):
     exponent: float = quantity("", 0.0, ge=0, le=1, help="m: how stiffness grows with mean stress")
     least: float = quantity("Pa", 100.0, ge=1e-6, le=1e12, help="mean stress below which soil gets no softer")
     poisson: float = quantity("", 0.3, ge=0, le=0.49, help="Poisson's ratio")
-    modulus: Literal["plane strain", "printed"] = "plane strain"
+    modulus: Literal["plane strain", "printed"] = pydantic.Field(
+        default="plane strain", description="law of elasticity: of plane strain, or as printed"
+    )
     friction_angle: float = quantity("rad", "30 degree", ge=0, le=1.4, help="angle of friction")
     dilatancy_angle: float = quantity("rad", 0.0, ge=0, le=1.4, help="angle of dilatancy")
     cohesion: float = quantity("Pa", 0.0, ge=0, le=1e9, help="cohesion")
     tension: float = quantity("Pa", 0.0, ge=0, le=1e9, help="largest tension")
     elastic: bool = pydantic.Field(False, description="never yields")
     permeability: float = quantity("m/s", 1e-3, ge=1e-12, le=10, help="k at the porosity of the start")
-    permeability_law: Literal["constant", "kozeny-carman"] = "constant"
+    permeability_law: Literal["constant", "kozeny-carman"] = pydantic.Field(
+        default="constant", description="how permeability follows the porosity"
+    )
     saturated: bool = pydantic.Field(False, description="pores are full at the start, up to the surface of the ground")
-    stress: Literal["geostatic", "none"] = "geostatic"
+    stress: Literal["geostatic", "none"] = pydantic.Field(default="geostatic", description="stress at the start")
     rest: float | None = quantity("", None, ge=0, le=5, help="K0 at the start")
-    floor: Literal["hold", "slip"] = "hold"
-    sides: Literal["hold", "slip"] = "slip"
+    floor: Literal["hold", "slip"] = pydantic.Field(default="hold", description="whether the floor holds the soil")
+    sides: Literal["hold", "slip"] = pydantic.Field(default="slip", description="whether the sides hold the soil")
     body: tuple[Body, ...] = pydantic.Field(min_length=1, description="pieces of ground")
     suction: SuctionSection | None = None
     numerics: SoilNumerics = SoilNumerics()

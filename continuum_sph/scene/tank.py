@@ -18,6 +18,10 @@ class TankSection(Section):
 
     width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner width of the tank")
     height: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner height of the tank")
-    walls: Literal["slip", "stick", "floor and lid stick"] = "slip"
-    wall_particles: Literal["pressure", "images"] = "pressure"
+    walls: Literal["slip", "stick", "floor and lid stick"] = pydantic.Field(
+        default="slip", description="whether walls let water slip"
+    )
+    wall_particles: Literal["pressure", "images"] = pydantic.Field(
+        default="pressure", description="what gives walls their pressure"
+    )
     lid: bool = pydantic.Field(True, description="close the tank, so that no splash is lost")

@@ -29,6 +29,10 @@ class WaterSection(Section):
     viscosity: float = quantity("Pa s", 1.002e-3, ge=0, le=1e9, help="viscosity")
     sound_speed: float | None = quantity("m/s", None, ge=1e-3, le=1e6, help="speed of sound, at least 10 sqrt(2 g H)")
     exponent: float = quantity("", 7.0, ge=1.5, le=20, help="exponent of the equation of state")
-    pressure: Literal["hydrostatic", "released", "none"] = "hydrostatic"
-    push: Literal["none", "face"] = "none"
+    pressure: Literal["hydrostatic", "released", "none"] = pydantic.Field(
+        default="hydrostatic", description="pressure at the start"
+    )
+    push: Literal["none", "face"] = pydantic.Field(
+        default="none", description="whether the right face starts with a speed"
+    )
     column: tuple[Column, ...] = pydantic.Field(default=(), description="rectangles of water")

@@ -57,7 +57,7 @@ class Touch(Section):
 class Pair(Touch):
     """The law between two materials: the mixing rule with these numbers in place of its own."""
 
-    materials: tuple[str, str]
+    materials: tuple[str, str] = pydantic.Field(description="names of both materials")
 
 
 class Material(Touch):
@@ -95,7 +95,9 @@ class Contact(Touch):
         "", None, **FRICTION, help="friction coefficient at walls (default: that between grains)"
     )
     wall_material: str = pydantic.Field("", description="material of walls and held discs (default: the first)")
-    release: Literal["force", "overlap"] = "force"
+    release: Literal["force", "overlap"] = pydantic.Field(
+        default="force", description="a contact ends where its force vanishes, or where its overlap does"
+    )
     step: float | None = quantity(
         "s", None, ge=1e-15, le=1e3, help="contact step (default: from the contact's stability)"
     )

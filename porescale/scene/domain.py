@@ -35,12 +35,14 @@ class Side(Section):
     For grains every side but a periodic one is solid: an inlet or outlet is a screen.
     """
 
-    kind: Kind = "wall"
+    kind: Kind = pydantic.Field(default="wall", description="what the side is")
     speed: float = quantity("m/s", 0.0, **SPEED, help="speed of a wall along itself, to the right or up")
     velocity: tuple[float, float] | OwnLaw | None = or_own(
         INFLOW, quantity("m/s", None, **SPEED, help="mean velocity of the fluid at the side")
     )
-    profile: Literal["uniform", "parabola"] = "uniform"
+    profile: Literal["uniform", "parabola"] = pydantic.Field(
+        default="uniform", description="how the velocity is spread over the side"
+    )
     pressure: float | None = quantity("Pa", None, ge=-1e9, le=1e9, help="pressure above hydrostatic")
     stress: TimeFunction | None = None
     force: TimeFunction | None = None

@@ -31,9 +31,9 @@ class TimeFunction(Section):
 
     @classmethod
     def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
-        for key in ("mean", "amplitude"):
-            schema["properties"][key] = {**number(), "default": 0.0}
-        schema["properties"]["values"]["items"] = number()
+        for key, about in (("mean", "mean value"), ("amplitude", "amplitude of the sine")):
+            schema["properties"][key] = {**number(), "default": 0.0, "description": about}
+        schema["properties"]["values"] |= {"items": number(), "description": "values at these times"}
         pair = {"type": "array", "prefixItems": [number(), number()], "minItems": 2, "maxItems": 2}
         return {"anyOf": [number(), {"type": "array", "items": pair}, schema]}
 

@@ -23,6 +23,10 @@ def test_every_key_of_a_scene_is_there(package):
     lost = {key for key in keys if f"| `{key}` |" not in page and f"[{key}]" not in page}
     assert lost == set()
     assert page.count("\n| `") > 100
+    # Every key says what it is.
+    silent = [line for line in page.splitlines() if line.startswith("| `") and line.count(" | ") == 5
+              and not line.split(" | ")[4].strip()]  # fmt: skip
+    assert silent == []
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -15,7 +15,7 @@ LINE = re.compile(r"^<!-- made: (\w+) ?([^\n]*?) -->$", re.MULTILINE)
 
 def makers() -> dict[str, Callable[[str], str]]:
     """What a page can name, and the function that makes it; imported when first wanted."""
-    from docs._ext.made import columns, commands, gallery, messages, names, scene_keys
+    from docs._ext.made import columns, commands, gallery, messages, names, notebook, scene_keys
 
     return {
         "scene_keys": scene_keys.page,
@@ -24,6 +24,7 @@ def makers() -> dict[str, Callable[[str], str]]:
         "messages": messages.page,
         "columns": columns.page,
         "gallery": gallery.page,
+        "notebook": notebook.page,
     }
 
 

@@ -181,6 +181,26 @@ def ratio_of_polygons() -> Measured:
     return Measured((10.0, 10.0), found, max(0.0, 6.0 - found[0], found[0] - found[1]))
 
 
+def triangles_over_discs(rule: str, seed: int = 0, count: int = COUNT) -> tuple[float, float]:
+    """(contacts of triangles over those of the discs that they are made of, stiffness of their springs over k)."""
+    discs, triangles = sample("discs", seed, count), sample("triangles", seed, count, rule=rule)
+    return triangles.bonds / discs.bonds, stiffness(triangles) / STIFFNESS
+
+
+@VALIDATIONS.row(
+    "dem.rock_of_triangles_that_count_each",
+    source=TUTORIAL + ".2: triangles whose segments each count have about 10 times the contacts of discs, and about the"
+    " root of 10 times their stiffness, which is a half: 1.58",
+    because="both are said to be about that, read off a plot: a factor of the root of 2 either way",
+    tolerance=0.5,
+    slow=True,
+)
+def triangles_each() -> Measured:
+    """Contacts over those of discs, and stiffness over the contact's, of 304 seeds; error in powers of two."""
+    exact, found = (10.0, math.sqrt(10.0) / 2.0), triangles_over_discs("each")
+    return Measured(exact, found, float(np.abs(np.log2(np.divide(found, exact))).max()))
+
+
 @VALIDATIONS.row(
     "dem.rock_of_slender_cells_breaks",
     source="Coulomb 1776: planes of shear, 45 + phi/2 = 58 degrees to the plates, reach 1.6 heights along the load",

@@ -1,5 +1,7 @@
 """Validations of rock hold, and their twins fail."""
 
+import math
+
 import pytest
 
 from porescale.dem.contact.linear import Linear
@@ -37,3 +39,10 @@ def test_without_tangential_springs_a_packing_is_no_solid():  # the twin that mu
 def test_square_cells_do_not_break():  # the twin that must fail: every plane of shear ends on a plate
     row = ROWS["dem.rock_of_slender_cells_breaks"]
     assert lab.left_when_pressed(1.0, SEEDS, FAST) > row.tolerance + 0.3
+
+
+def test_triangles_whose_corners_count_once_have_too_few_contacts():  # the twin that must fail
+    row = ROWS["dem.rock_of_triangles_that_count_each"]
+    contacts, stiff = lab.triangles_over_discs("outline", count=60)
+    assert math.log2(10.0 / contacts) > 2.0 * row.tolerance
+    assert math.log2(10.0**0.5 / 2.0 / stiff) > 2.0 * row.tolerance
