@@ -8,6 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from scipy.spatial import cKDTree
 
 from porescale.common.core.atomic import save
 from porescale.common.core.types import AnyArray
@@ -51,8 +52,10 @@ def contact_forces(shot: Snapshot, view: View) -> Figure:
 def body_numbers(shot: Snapshot, view: View) -> Figure:
     """Bodies with their numbers, those of in_bc.dat, in the middle of their points."""
     figure, axes = _stage(shot, view, f"numbers at {shot.time:.4g}")
-    for number, (x, y) in places_of_bodies(shot).items():
-        axes.text(x, y, str(number), ha="center", va="center", fontsize=_size(shot, view), clip_on=True)
+    places = places_of_bodies(shot)
+    size = _size(places, view)
+    for number, (x, y) in places.items():
+        axes.text(x, y, str(number), ha="center", va="center", fontsize=size, clip_on=True)
     return figure
 
 
@@ -64,11 +67,14 @@ def places_of_bodies(shot: Snapshot) -> dict[int, tuple[float, float]]:
     return {int(k): (float(at[body == k, 0].mean()), float(at[body == k, 1].mean())) for k in np.unique(body)}
 
 
-def _size(shot: Snapshot, view: View) -> float:
-    """Size of numbers that fits between bodies, points: a third of the mean distance of their middles."""
-    spread = ((view[1] - view[0]) * (view[3] - view[2]) / max(len(places_of_bodies(shot)), 1)) ** 0.5
+def _size(places: dict[int, tuple[float, float]], view: View) -> float:
+    """Size of numbers that fits between neighbours, points: a digit is as wide as 0.6 of it."""
+    if len(places) < 2:
+        return MOST
+    at = np.array(list(places.values()))
+    apart = float(np.median(cKDTree(at).query(at, 2)[0][:, 1]))
     points = 72.0 * 8.0 / max(view[1] - view[0], view[3] - view[2])
-    return float(np.clip(spread * points / 3.0, LEAST, MOST))
+    return float(np.clip(apart * points / (0.7 * len(str(max(places)))), LEAST, MOST))
 
 
 def _stage(shot: Snapshot, view: View, title: str) -> tuple[Figure, Axes]:

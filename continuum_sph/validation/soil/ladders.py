@@ -29,8 +29,20 @@ def friction(rows: float) -> float:
 
 
 @LADDERS.ladder(
+    "soil.friction_near_the_limit",
+    title="The same on a slope of 28°, 1.4° beyond its limit",
+    along="rows of particles",
+    levels=ROWS,
+    because=BECAUSE,
+)
+def friction_near_the_limit(rows: float) -> float:
+    """Without dilatancy, between 0.75 s and 1.5 s."""
+    return abs(strewn_friction(int(rows), degrees=28.0) / TAN_PHI - 1.0)
+
+
+@LADDERS.ladder(
     "soil.friction_by_own_pressure",
-    title="The same, where each particle yields by its own mean stress",
+    title="The same on 30°, where each particle yields by its own mean stress",
     along="rows of particles",
     levels=ROWS,
     because=BECAUSE,

@@ -130,13 +130,13 @@ def layer(
 
 
 @functools.cache
-def strewn_friction(rows: int, *, friction: float = TAN_PHI, own: bool = False) -> float:
-    """Friction that slows a layer of strewn particles on 30°: (g sin β - a)/(g cos β), a (m/s²) its mean acceleration
+def strewn_friction(rows: int, *, degrees: float = 30.0, friction: float = TAN_PHI, own: bool = False) -> float:
+    """Friction that slows a layer of strewn particles on a slope: (g sin β - a)/(g cos β), a (m/s²) its mean acceleration
     between 0.75 s and 1.5 s.
 
     friction : sin φ of the soil;  own : each particle yields by its own p, not by the mean of its surroundings.
     """
-    flow, tilt, marks = layer(30.0, rows, friction, columns=16, strewn=0.2), math.radians(30.0), []
+    flow, tilt, marks = layer(degrees, rows, friction, columns=16, strewn=0.2), math.radians(degrees), []
     n = flow.soil.soil
     for time in (0.75, 1.5):
         while flow.time < time:

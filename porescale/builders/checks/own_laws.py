@@ -2,6 +2,9 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
 
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.compiled.own_kernel import compile_for
@@ -51,44 +54,78 @@ def energy_of_mass(scene: Scene, laws: Sequence[ContactLaw], mass: float, radius
 def inflow_peak(scene: Scene, name: str) -> float:
     """Largest speed (m/s) of the own law of a side over the run; 0 where it has none.  InputError where it is no number
     somewhere."""
-    side, box = scene.domain.side(name), scene.domain
-    if not isinstance(side.velocity, OwnLaw):
-        return 0.0
-    length = box.height if name in ("left", "right") else box.width
-    places = [((k + 0.5) / PLACES * length,) for k in range(PLACES)]
-    return _largest(f"domain.{name}.velocity", side.velocity, places, scene.time.end, "m/s")
+    looked = _inflow(scene, name)
+    return looked.largest if looked else 0.0
+
+
+def inflow_rate(scene: Scene, name: str) -> float:
+    """How fast that velocity changes, rad/s: see `Looked`."""
+    looked = _inflow(scene, name)
+    return looked.rate if looked else 0.0
 
 
 def largest_force(scene: Scene) -> float:
     """Largest force density (N/m³) of an own body force over the run.  InputError where it is no number somewhere."""
-    assert scene.fluid
-    law, box = scene.fluid.body_force, scene.domain
-    assert isinstance(law, OwnLaw)
+    looked = _force(scene)
+    assert looked
+    return looked.largest
+
+
+def force_rate(scene: Scene) -> float:
+    """How fast that force changes, rad/s; 0 of a constant one."""
+    looked = _force(scene)
+    return looked.rate if looked else 0.0
+
+
+class Looked(NamedTuple):
+    """What a law was seen to give: its ``largest`` length, and its ``rate``, rad/s: the largest change between two
+    times that it was looked at over half the reach of what it gives at one place."""
+
+    largest: float
+    rate: float
+
+
+def _inflow(scene: Scene, name: str) -> Looked | None:
+    side, box = scene.domain.side(name), scene.domain
+    if not isinstance(side.velocity, OwnLaw):
+        return None
+    length = box.height if name in ("left", "right") else box.width
+    places = [((k + 0.5) / PLACES * length,) for k in range(PLACES)]
+    return _look(f"domain.{name}.velocity", side.velocity, places, scene.time.end, "m/s")
+
+
+def _force(scene: Scene) -> Looked | None:
+    law, box = scene.fluid.body_force if scene.fluid else None, scene.domain
+    if not isinstance(law, OwnLaw):
+        return None
     shares = [(k + 0.5) / PLACES for k in range(PLACES)]
     places = [(x * box.width, y * box.height) for x in shares for y in shares]
-    return _largest("fluid.body_force", law, places, scene.time.end, "N/m^3")
+    return _look("fluid.body_force", law, places, scene.time.end, "N/m^3")
 
 
-def _largest(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], end: float, unit: str) -> float:
-    """Largest length of what a law gives at some places (m) and times up to ``end`` (s)."""
+def _look(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], end: float, unit: str) -> Looked:
+    """What a law gives at some places (m) and times up to ``end`` (s)."""
     timed = law.function.__code__.co_argcount > len(places[0])
     times = [end * k / TIMES for k in range(TIMES + 1)] if timed else [0.0]
     try:
         compiled = compile_for(law, *places[0], *times[: 1 if timed else 0], count=2)
     except InputError as error:
         raise InputError([_at(key, fault) for fault in error.faults]) from None
-    largest = 0.0
-    for time in times:
-        for place in places:
-            u, v = compiled(*place, time) if timed else compiled(*place)
-            size = math.hypot(u, v)
-            if not size <= MOST[unit]:
+    given = np.zeros((len(times), len(places), 2))
+    for row, time in zip(given, times, strict=True):
+        for k, place in enumerate(places):
+            row[k] = u, v = compiled(*place, time) if timed else compiled(*place)
+            if not math.hypot(u, v) <= MOST[unit]:
                 where = ", ".join(f"{it:.4g} m" for it in place) + (f" and {time:.4g} s" if timed else "")
                 problem = f"is ({u:g}, {v:g}) {unit} at {where}"
                 repair = f"correct {law.name} in {law.place}"
                 raise InputError(Fault(key, law.reference, problem, "", f"<= {MOST[unit]:g} {unit}", repair))
-            largest = max(largest, size)
-    return largest
+    largest = float(np.hypot(given[..., 0], given[..., 1]).max())
+    if not timed:
+        return Looked(largest, 0.0)
+    reach = 0.5 * float(np.ptp(given, axis=0).max())
+    steepest = float(np.abs(np.diff(given, axis=0)).max()) * TIMES / end
+    return Looked(largest, steepest / reach if reach > 1e-9 * largest else 0.0)
 
 
 def _at(key: str, fault: Fault) -> Fault:

@@ -14,13 +14,13 @@ from porescale.builders.checks.limits import (
     MACH_WARN,
     RING_CELLS,
     SINGLE_PRECISION,
-    SOUND_WARN,
     coarse,
     light,
     slow,
     thin,
 )
 from porescale.builders.checks.own_laws import inflow_peak, largest_force
+from porescale.builders.checks.sound import check_gate, check_sound
 from porescale.builders.initial.clumps import least_density
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.fluid_options import collision_options, weight_of
@@ -171,7 +171,8 @@ def check_regime(
     _check_mach(scales, speed, faults, warnings)
     _check_operator(scene, scales, speed, sizes, warnings)
     _check_thickness(scene.rectangle, scales, warnings)
-    _check_sound(scene, scales, warnings)
+    check_sound(scene, scales, warnings)
+    check_gate(scene, scales, warnings)
     if scene.ring and scene.ring.diameter < RING_CELLS * scales.spacing:
         repair = f"a spacing of {scene.ring.diameter / RING_CELLS:.2g} m gives it so many"
         cells, allowed = (
@@ -242,18 +243,6 @@ def _check_thickness(sections: Sequence[Rectangle], scales: Scales, warnings: li
             warnings.append(
                 f"rectangle {k} is {thinnest / scales.spacing:.3g} cells thick: below {CELLS_THICK:g} it may fill no"
                 f" cell and lets fluid through; a spacing of {thinnest / CELLS_THICK:.2g} m fills some"
-            )
-
-
-def _check_sound(scene: Scene, scales: Scales, warnings: list[str]) -> None:
-    """Discs that swing so fast that their sound does not cross the box at once."""
-    for k, it in enumerate(scene.disc):
-        fastest = max((fn.frequency for fn in (it.velocity_x, it.velocity_y) if fn), default=0.0)
-        turn = 2 * math.pi * fastest * max(scene.domain.width, scene.domain.height) / scales.sound_speed
-        if turn > SOUND_WARN:
-            warnings.append(
-                f"disc {k} swings at {fastest:.3g} Hz, by {turn:.2g} rad while sound crosses the box: pressures lag by"
-                f" as much; a step of {scales.step * 0.9 * SOUND_WARN / turn:.2g} s keeps it below {SOUND_WARN}"
             )
 
 

@@ -1,0 +1,85 @@
+"""What compressibility does to a scene beside its Mach number: motion that sound does not keep up with, and the suction
+below a gate that rises along grains."""
+
+import math
+from collections.abc import Iterator
+
+from porescale.builders.checks.limits import DENSITY_WARN, SOUND_WARN
+from porescale.builders.checks.own_laws import force_rate, inflow_rate
+from porescale.lbm.scales import Scales
+from porescale.scene.scene import Scene
+from porescale.scene.time_function import TimeFunction
+
+GATE_FILM = 2.6
+"""Suction over mu V sqrt(R)/g^(3/2) where a gate rises at V along discs of hydraulic radius R, which keep a film g from
+it.  In the film p' = 6 mu V/h² - 12 mu q/h³ with h = g + x²/2R (Reynolds 1886): 0.92 at a disc alone, with as much
+pressure above as below, and 13.3 where nothing flows past it.  The discs of a bed lie between: 2.3 to 2.6 in the case
+column_collapse at half the speed, half the viscosity, a film half as thick again, two thirds of the spacing."""
+GATE_EDGE = 2.6
+"""Suction over mu V/h at the edge of a gate that rises in plain water: 2.6 to 3.1 at V h/nu below 1."""
+GATE_HEAD = 0.75
+"""What is added to it over rho V²: 0.75 at V h/nu of 2 to 10."""
+
+
+def check_sound(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Warn of motion that changes while sound crosses the box."""
+    size = max(scene.domain.width, scene.domain.height)
+    for what, rate in rates(scene):
+        turn = rate * size / scales.sound_speed
+        if turn > SOUND_WARN:
+            warnings.append(
+                f"{what} at {rate / (2 * math.pi):.3g} Hz, by {turn:.2g} rad while sound crosses the box"
+                f" ({turn / (2 * math.pi):.2g} acoustic wavelengths): pressures lag by as much; a step of"
+                f" {scales.step * 0.9 * SOUND_WARN / turn:.2g} s keeps it below {SOUND_WARN}"
+            )
+
+
+def rates(scene: Scene) -> Iterator[tuple[str, float]]:
+    """Everything that changes the flow with time: what it does, and how fast it changes, rad/s.
+
+    A sine changes at its pulsation, a table at its steepest slope over the range of its values.
+    """
+    for k, it in enumerate(scene.disc):
+        yield f"disc {k} swings", max(rate_of(it.velocity_x), rate_of(it.velocity_y))
+    for k, control in enumerate(scene.control):
+        given = [fn for axis in (control.x, control.y) for fn in (axis.velocity, axis.displacement, axis.force)]
+        yield f"what control {k} moves swings", max(map(rate_of, given))
+    for name in scene.domain.sides:
+        yield f"the velocity of the {name} side changes", inflow_rate(scene, name)
+    yield "fluid.body_force changes", force_rate(scene)
+
+
+def rate_of(course: TimeFunction | None) -> float:
+    """How fast a course changes, rad/s; 0 of a constant."""
+    if course is None:
+        return 0.0
+    if course.times:
+        reach = max(course.values) - min(course.values)
+        return course.steepest / reach if reach else 0.0
+    return 2 * math.pi * course.frequency if course.amplitude else 0.0
+
+
+def gate_suction(scene: Scene, scales: Scales, speed: float) -> float:
+    """Suction (Pa) below a gate that rises at ``speed`` (m/s): at its edge, or in the film along a packing."""
+    viscosity = scales.density * scales.viscosity
+    drawn = GATE_EDGE * viscosity * speed / scales.spacing + GATE_HEAD * scales.density * speed**2
+    if scene.grains is None or scene.grains.packing is None:
+        return drawn
+    ratio, diameter = scene.grains.hydraulic_radius_ratio or 1.0, scene.grains.packing.diameter
+    film = max(0.5 * (1 - ratio) * diameter, 0.25 * scales.spacing)  # thinner ones are no film in the lattice
+    return float(max(drawn, GATE_FILM * viscosity * speed * math.sqrt(0.5 * ratio * diameter) / film**1.5))
+
+
+def check_gate(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Warn of a gate that thins the water as it is lifted."""
+    speed = scene.gate.lift_speed if scene.gate else None
+    if not speed:
+        return
+    change = gate_suction(scene, scales, speed) / (scales.density * scales.sound_speed**2)
+    if change > DENSITY_WARN:
+        share = 0.9 * DENSITY_WARN / change
+        warnings.append(
+            f"gate.lift_speed = {speed:g} m/s draws the water at the gate thinner by {change:.2g}, most in the film"
+            f" between it and grains; {share * speed:.2g} m/s, or a step of {scales.step * math.sqrt(share):.2g} s,"
+            f" keeps it below {DENSITY_WARN}"
+        )
