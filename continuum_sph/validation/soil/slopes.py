@@ -131,8 +131,8 @@ def layer(
 
 @functools.cache
 def strewn_friction(rows: int, *, degrees: float = 30.0, friction: float = TAN_PHI, own: bool = False) -> float:
-    """Friction that slows a layer of strewn particles on a slope: (g sin β - a)/(g cos β), a (m/s²) its mean acceleration
-    between 0.75 s and 1.5 s.
+    """Friction that slows a layer of strewn particles on a slope: (g sin β - a)/(g cos β), a (m/s²) its mean
+    acceleration between 0.75 s and 1.5 s.
 
     friction : sin φ of the soil;  own : each particle yields by its own p, not by the mean of its surroundings.
     """
