@@ -148,7 +148,7 @@ def _convergence(package: Package) -> Callable[..., int]:
         Ladders that are not named stay in the files as they were.  Exit code 1 if an order does not hold.
         """
         from porescale.common.evidence import convergence_files as study
-        from porescale.common.record.card import commit
+        from porescale.common.record.card import short_commit
 
         assert package.convergence is not None
         register = package.convergence()
@@ -160,10 +160,9 @@ def _convergence(package: Package) -> Callable[..., int]:
         use_threads(threads)
         kept, made = study.stored(folder), []
         about = circumstances(package, _command_line(package, "convergence", ()), threads or 1)
-        source = commit()
+        mark = {"date": about["date"], "commit": short_commit()}
         for it in ladders:
             made.append(it.run())
-            mark = {"date": about["date"], "commit": source["hash"][:8] if source else ""}
             kept[it.name] = made[-1].as_dict() | mark
             say(f"{it.name}: order {study.number(made[-1].measured)} ({made[-1].seconds:.1f} s)")
         study.write(folder, about, [kept[it.name] for it in register if it.name in kept])

@@ -66,10 +66,10 @@ def command(package: Package) -> Callable[..., int]:
 def _keep(folder: Path, register: Sequence[Validation], rows: Sequence[Row]) -> None:
     """Put rows into the files in ``folder`` beside those that other runs left, in the order of the register."""
     from porescale.common.evidence import validation_files as files
-    from porescale.common.record.card import commit
+    from porescale.common.record.card import short_commit
 
-    known, source = files.stored(folder / f"{files.NAME}.json"), commit()
-    mark = {"date": datetime.now(UTC).date().isoformat(), "commit": source["hash"][:8] if source else ""}
+    known = files.stored(folder / f"{files.NAME}.json")
+    mark = {"date": datetime.now(UTC).date().isoformat(), "commit": short_commit()}
     topics = {item.name: {"topic": item.topic} for item in register}
     known |= {row.name: row.as_dict() | topics[row.name] | mark for row in rows}
     files.write(folder, [known[name] for name in topics if name in known])

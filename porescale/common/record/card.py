@@ -101,6 +101,12 @@ def commit() -> dict[str, Any] | None:
     return {"hash": revision, "changed": changed}
 
 
+def short_commit() -> str:
+    """Eight digits of the commit, with a + where files have changed since; "" outside of a checkout."""
+    known = commit()
+    return known["hash"][:8] + "+" * known["changed"] if known else ""
+
+
 def _git(root: Path, *words: str) -> str:
     done = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=True)
     return done.stdout.strip()
