@@ -4,7 +4,7 @@ import pytest
 
 from tests.reference import nearly
 
-COUNT = 120
+COUNT = 60
 """Mutants of the quick test, a few of each scene; python -m tests.reference.nearly does thousands."""
 
 
