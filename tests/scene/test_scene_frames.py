@@ -218,7 +218,7 @@ def test_a_container_that_leaves_the_box_as_it_turns_is_warned_of():
 def test_a_polygon_behind_a_wall_is_refused():
     slope = {"x": 0.006, "y": 0.0, "normal": [-1.0, 1.0]}
     found = refused(wall=[slope], polygon=[{**SQUARE, "at": [[9e-3, 2e-3]]}])
-    assert found == ["polygon[0] = '(0.009, 0.002)': stands across or behind wall[0]; move one of them"]
+    assert found == ["polygon[0] = '(0.009, 0.002)': stands across or behind wall[0] by 0.000757 m; move one of them"]
 
 
 def test_lines_and_polygons_come_back_from_the_file(tmp_path):

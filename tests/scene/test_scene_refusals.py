@@ -279,7 +279,7 @@ def test_a_placement_that_jams_is_named_by_its_key():
 
 def test_a_grain_across_the_gate_is_named():
     said = refusals(lambda: derive(hand(grain(0.003, 0.004), grain(0.0076, 0.004), gate={"x": 0.008})))
-    assert said == ["grains.grain[1] = '(0.0076, 0.004)': stands across the gate; move one of them"]
+    assert said == ["grains.grain[1] = '(0.0076, 0.004)': stands across the gate by 0.0001 m; move one of them"]
 
 
 def test_a_packing_settles_straight_down_and_only_if_it_sinks():

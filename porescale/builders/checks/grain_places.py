@@ -22,6 +22,8 @@ TOUCH = 1e-3
 """Overlap, over the smaller diameter, up to which grains placed by hand may start."""
 WEAK = 1e-6
 """Gravity, m/s², below which nothing settles in a lifetime."""
+LAST_BITS = 1e-12
+"""Relative slack of a disc that is as wide as a period."""
 EDGE = 1e-9
 """Relative slack of a packing's edges: 8 mm + 4 mm is 12 mm whatever its last bit."""
 
@@ -39,7 +41,11 @@ def check_grain_places(scene: Scene, sizes: tuple[float, float, float] | None, f
         return
     packing = scene.grains.packing if scene.grains else None
     # The skin follows the mean radius; that of a packing is drawn, so its upper bound counts.
-    if _too_short(scene.domain, sizes[2], SKIN * (sizes[2] if packing else sizes[1]) / 2, faults):
+    skin = SKIN * (sizes[2] if packing else sizes[1]) / 2
+    if held_alone(scene):
+        if _wider_than_a_period(scene, faults):
+            return
+    elif _too_short(scene.domain, sizes[2], skin, faults):
         return
     if packing:
         _check_packing(packing, scene.domain, scene.gate, faults)
@@ -48,16 +54,22 @@ def check_grain_places(scene: Scene, sizes: tuple[float, float, float] | None, f
     if not names:
         faults += across_walls(scene, x, r, names, 0.0)
         return
-    box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - _touch(scene))
+    # as deep as in another of its size: a share of the diameter
+    box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - 2 * _touch(scene))
     beyond = np.where(_periodic(scene.domain), (x < 0) | (x > box), (x < inner) | (x > box - inner)).any(axis=1)
     if beyond.any():
         k = int(beyond.argmax())
-        faults.append(_misplaced(names[k], x[k], "reaches out of the box", "move it inside by its radius"))
+        out = np.where(
+            _periodic(scene.domain), np.maximum(-x, x - box), np.maximum(r[:, None] - x, x + r[:, None] - box)
+        )
+        problem = f"reaches out of the box by {float(out[k].max()):.3g} m"
+        faults.append(_misplaced(names[k], x[k], problem, "move it inside by its radius"))
     if scene.gate:
         across = np.abs(x[:, 0] - scene.gate.x) < inner[:, 0]
         if across.any():
             k = int(across.argmax())
-            faults.append(_misplaced(names[k], x[k], "stands across the gate", "move one of them"))
+            problem = f"stands across the gate by {r[k] - abs(float(x[k, 0]) - scene.gate.x):.3g} m"
+            faults.append(_misplaced(names[k], x[k], problem, "move one of them"))
     faults += across_walls(scene, x, r, names, _touch(scene))
     _check_overlap(x, r, scene, names, 0, faults)
 
@@ -104,6 +116,25 @@ def deepest(
     depth = r[i] + r[j] - np.hypot(*apart.T)
     worst = int(depth.argmax())
     return int(i[worst]), int(j[worst]), float(depth[worst])
+
+
+def held_alone(scene: Scene) -> bool:
+    """Whether all discs are held and nothing that could touch them is free: contacts are none of their business."""
+    others = scene.grains, scene.clump, scene.segment, scene.polygon, scene.container, scene.rock, scene.lubrication
+    return bool(scene.disc) and not any(others)
+
+
+def _wider_than_a_period(scene: Scene, faults: list[Fault]) -> bool:
+    """Whether a held disc overlaps its own image; it may touch it."""
+    before, d = len(faults), scene.domain
+    for k, it in enumerate(scene.disc):
+        sides = zip(("width", "height"), (d.width, d.height), d.periodic, strict=True)
+        for name, length, periodic in sides:
+            if periodic and it.diameter > length * (1 + LAST_BITS):
+                problem = f"overlaps its own image by {it.diameter - length:.3g} m across the periodic {name}"
+                repair = "make it smaller, or the box larger"
+                faults.append(Fault(f"disc[{k}].diameter", it.diameter, problem, "m", f"<= {length:g}", repair))
+    return len(faults) > before
 
 
 def _too_short(domain: Domain, largest: float, skin: float, faults: list[Fault]) -> bool:

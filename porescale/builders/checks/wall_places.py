@@ -17,11 +17,13 @@ def across_walls(
     packing = scene.grains.packing if scene.grains else None
     for k, it in enumerate(scene.wall):
         normal = np.array(it.normal) / math.hypot(*it.normal)
-        behind = (x - np.array([it.x, it.y])) @ normal < r * (1 - touch)
+        apart = (x - np.array([it.x, it.y])) @ normal
+        behind = apart < r * (1 - 2 * touch)  # as deep as in another of its size: a share of the diameter
         if behind.any():
             i = int(behind.argmax())
             where = f"({x[i, 0]:g}, {x[i, 1]:g})"
-            faults.append(Fault(names[i], where, f"stands across or behind wall[{k}]", "m", repair="move one of them"))
+            problem = f"stands across or behind wall[{k}] by {float(r[i] - apart[i]):.3g} m"
+            faults.append(Fault(names[i], where, problem, "m", repair="move one of them"))
         if packing:
             ends = (packing.left, packing.left + packing.width), (packing.bottom, packing.bottom + packing.height)
             corners = np.array([(a, b) for a in ends[0] for b in ends[1]])

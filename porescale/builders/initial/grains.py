@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from porescale.builders.checks.frame_places import require_frames_apart
-from porescale.builders.checks.grain_places import require_apart
+from porescale.builders.checks.grain_places import held_alone, require_apart
 from porescale.builders.checks.rectangle_places import require_free_of_rectangles
 from porescale.builders.derive import Derived, grain_count
 from porescale.builders.initial.apply_sections import apply_sections
@@ -74,6 +74,8 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Gra
     else:
         parts = [_placed(packing, MaterialPlan.of(scene).density(packing.material)), *parts] if packing else parts
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
+        if held_alone(scene) and any(grains.box.periodic) and _crowds_its_period(grains):
+            grains.reach = np.zeros(grains.discs.count)  # no pair is looked for, so that each may touch its own image
         if grains.discs.count:  # where bodies of segments are all there is they come with lists of their own
             grains.refresh()  # contacts count from the first row of the series on
     if scene.rectangle:
@@ -90,6 +92,12 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Gra
     if scene.grains and frames and packing and not scene.rock:
         require_frames_apart(scene.grains.overlap, frames, discs, placed(scene)[0])
     return grains, recorded
+
+
+def _crowds_its_period(grains: Grains) -> bool:
+    """Whether a periodic side is shorter than two cutoffs of the pair search."""
+    least = 2 * (2 * float(grains.discs.radius.max()) + grains.pairs.skin)
+    return any(0.0 < period < least for period in grains.pairs.period)
 
 
 def _held(discs: Sequence[Disc], density: float) -> Discs:
