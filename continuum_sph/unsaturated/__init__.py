@@ -8,7 +8,8 @@ the soil, and between its particles by Darcy's law.  There are no particles of w
 the levels of its reservoirs.
 
 Stress.  Bishop's effective stress (Geotechnique 9 (1959) 215, in Teknisk Ukeblad 106 (1959) 859) takes χ p off the
-total stress, χ = S_e below saturation and 1 above: suction holds grains together.
+total stress and leaves χ to be measured; here χ = S_e below saturation (Lu, Godt & Wu, Water Resour. Res. 46 (2010)
+W05515) and 1 above: suction holds grains together.
 
 Parts: `VanGenuchten` (`retention`), Mualem's k_r (`conductivity`), `Moisture`, the water (`richards`), `Outside`, what
 lies about the ground (`outside`), `pore_forces` on the soil (`pore_stress`), `MoistSoil`, both moving (`step`).

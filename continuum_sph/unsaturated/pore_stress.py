@@ -1,4 +1,6 @@
-"""Forces of pore water on soil: -∇π with π = χ p, χ = S_e under suction and 1 above (Bishop 1959).
+"""Forces of pore water on soil: -∇π with π = χ p, χ = S_e under suction and 1 above.
+
+χ p is the form of Bishop 1959, who leaves χ to be measured; χ = S_e is that of Lu, Godt & Wu 2010.
 
     f_i = -V_i Σ_j V_j {(π_i - p°) K_i + (π_j - p°) K_j}·∇W
 

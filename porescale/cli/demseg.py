@@ -175,7 +175,8 @@ def convert(
     _require_valid_scene(text)
     write_text(file, text)
     if deck.jclid == GO_ON and (count := stretched(model.grains)):
-        print(f"{file}: begins without the tangential springs of {count} contacts, which scenes start at rest")
+        which = "1 contact" if count == 1 else f"{count} contacts"
+        print(f"{file}: leaves out the tangential springs of {which}: scenes start with them at rest")
     print(f"{file}: check it with porescale check {file}")
     return 0
 

@@ -3,9 +3,9 @@
 Scenes have discs, clumps, bodies of segments, materials, walls, controls and bonds; their domain begins at the origin.
 Their bodies are in another order: discs, clumps, segments, polygons, so sums are added up otherwise and runs agree to
 round-off, as long as it does not grow.  Scenes have no angle at the start, which is left out: nothing depends on it.
-Scenes do not start with springs that are stretched: a deck that goes on from another run (jclid 1) begins with its
-places, speeds and bonds, and with tangential springs at rest; ``stretched`` says how many.  Contacts count corners of
-segments once (rule "outline").
+Scenes start with tangential springs at rest: of a deck that goes on from another run (jclid 1) places, speeds and bonds
+are kept, and its tangential springs are left out; ``stretched`` counts the contacts that had one.  Contacts count
+corners of segments once (rule "outline").
 """
 
 import json
@@ -82,7 +82,7 @@ def scene_of(
 
 
 def stretched(grains: Grains) -> int:
-    """Contacts whose tangential springs are not at rest."""
+    """How many contacts have a tangential spring that is not at rest."""
     return int(np.count_nonzero(contacts(grains).spring))
 
 

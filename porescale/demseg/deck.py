@@ -71,10 +71,13 @@ class Random:
     void_ratio: float
 
     def count(self, domain: Four) -> int:
-        """How many discs of radii uniform between the two fill a domain to the void ratio."""
+        """How many discs of radii uniform between the two fill a domain to the void ratio; one over MOST_BODIES stands
+        for all that are more."""
         x1, x2, y1, y2 = domain
         mean = math.pi * (self.smallest**2 + self.smallest * self.largest + self.largest**2) / 3.0
-        return round(min((x2 - x1) * (y2 - y1) / (1.0 + self.void_ratio) / mean, MOST_BODIES))
+        most = (MOST_BODIES + 1.0) * mean * (1.0 + self.void_ratio)
+        room = (x2 - x1) * (y2 - y1)
+        return MOST_BODIES + 1 if room >= most else round(room / (1.0 + self.void_ratio) / mean)
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,7 @@ def _grains(file: Reader) -> Deck:
     file.must(x2 > x1, "x2", x2, f"> x1 = {x1:g}")
     file.must(y2 > y1, "y2", y2, f"> y1 = {y1:g}")
     file.must(thick >= 0.0, "thick", thick, ">= 0")
-    random = _random(file, len(stuff)) if mode == 0 else None
+    random = _random(file, len(stuff), (x1, x2, y1, y2)) if mode == 0 else None
     bodies: tuple[Body, ...] = ()
     if random is None:
         ncir, nseg1, nseg2 = file.record(("ncir", int), ("nseg1", int), ("nseg2", int))
@@ -155,7 +158,7 @@ def _stuff(file: Reader) -> Stuff:
     return Stuff(*values)
 
 
-def _random(file: Reader, stuff: int) -> Random:
+def _random(file: Reader, stuff: int, domain: Four) -> Random:
     r1, r2 = file.record(("r1", float), ("r2", float))
     file.must(r1 > 0.0, "r1", r1, "> 0")
     file.must(r2 >= r1, "r2", r2, f">= r1 = {r1:g}")
@@ -163,7 +166,11 @@ def _random(file: Reader, stuff: int) -> Random:
     file.must(1 <= material <= stuff, "material", material, f"1 to {stuff}")
     (void,) = file.record(("void ratio", float))
     file.must(void > 0.0, "void ratio", void, "> 0")
-    return Random(r1, r2, int(material), void)
+    made = Random(r1, r2, int(material), void)
+    if not file.faults:
+        fits = made.count(domain) <= MOST_BODIES
+        file.must(fits, "void ratio", void, f"a larger one, or larger discs: it makes more than {MOST_BODIES} of them")
+    return made
 
 
 def _body(file: Reader, number: int, of_discs: bool, long: bool, stuff: int, domain: Four) -> Body:

@@ -15,8 +15,8 @@ from porescale.common.core.errors import Fault, InputError
 REAL = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[edEDqQ]([+-]?\d+)|([+-]\d+))?")
 """Mantissa, exponent after a letter, exponent without one."""
 WHOLE = re.compile(r"[+-]?\d+")
-BEGUN = re.compile(r"[-+.\d*]|nan|inf", re.IGNORECASE)
-"""How a word begins that is meant as a number."""
+BEGUN = re.compile(r"[-+]?[-+.]?\d|[-+]?(nan|inf)(inity)?$", re.IGNORECASE)
+"""How a word begins that is meant as a number: a digit after signs or a point, or all of nan or inf."""
 MARKS = ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"), (b"\xef\xbb\xbf", "utf-8-sig"))
 REPEATED = re.compile(r"(\d+)\*(.+)")
 LONGEST_WHOLE = 18

@@ -4,7 +4,8 @@ Every nprn1 steps, written at the end of a run:
 output.dat    a line "step time n", then for each of the n elements: body, element, then of a disc 1, radius, x, y,
               angle, of a segment 2, x1, y1, x2, y2;
 cont.dat      a line "step time n", then for each of the n contacts between bodies: body, other body, x, y of the
-              contact, force x, force y on the other, normal and tangential part;  the normal part is negative where
+              contact, force x, force y on the other, normal and tangential part;  the contact of two discs and their
+              bond are one line, those of a corner or segment lines of their own;  the normal part is negative where
               a bond pulls;  tangential > 0 pushes the first body along the normal turned left by a right angle;
 cont2.dat     the same with the sides of the domain in place of the other: -1 left, -2 right, -3 bottom, -4 top.
 Every nprn2 steps, written with energy.dat:
@@ -27,6 +28,7 @@ from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.open_run import Run
 from porescale.dem.forces.walls import SIDES
 from porescale.dem.grains import Grains
+from porescale.dem.measures.contact_list import Contacts
 from porescale.dem.measures.contacts import contacts
 from porescale.demseg.build import Built
 from porescale.demseg.deck import Deck
@@ -44,12 +46,15 @@ def bodies_of(built: Built) -> Index:
 
 
 def contact_cloud(built: Built) -> Cloud:
-    """Contacts at their points, with bodies or side, and what they carry: a contact and its bond are one row."""
+    """Contacts at their points, with bodies or side, and what they carry: a contact of discs and its bond are one row.
+
+    Rows of corners stay apart, and so do those of their bonds, see `_apart`.
+    """
     grains, body = built.grains, bodies_of(built)
     found = contacts(grains)
     sides = np.array([-1 - SIDES.index(name) for name in grains.wall_names] or [0])
     other = np.where(found.pairs, body[found.second], sides[found.surface])
-    key = np.column_stack((found.first, found.second, found.surface, _bonded_to(grains, found.count)))
+    key = np.column_stack((found.first, found.second, found.surface, _apart(grains, found)))
     _, rows, same = np.unique(key, axis=0, return_index=True, return_inverse=True)
     same = same.reshape(-1)
 
@@ -66,10 +71,14 @@ def contact_cloud(built: Built) -> Cloud:
     return Cloud(found.point[rows], data)
 
 
-def _bonded_to(grains: Grains, count: int) -> Index:
-    """0: contacts between the same two points are one.  Corners touch several segments that begin at one corner; their
-    rows stay apart, and so do those of their bonds."""
-    return np.zeros(count, np.int64) if grains.segments is None else np.arange(count)
+def _apart(grains: Grains, found: Contacts) -> Index:
+    """0 of rows of discs and sides alone: those between the same two are one.  A number of its own of each row of a
+    corner: points touch several segments that begin at one corner."""
+    if grains.segments is None:
+        return np.zeros(found.count, np.int64)
+    ends = np.unique(grains.segments.ends)
+    own = np.isin(found.first, ends) | (found.pairs & np.isin(found.second, ends))
+    return np.where(own, np.arange(1, found.count + 1), 0)
 
 
 def write_places(folder: Path, run: Run, built: Built, deck: Deck) -> None:

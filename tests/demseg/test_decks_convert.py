@@ -94,7 +94,7 @@ def continued(tmp_path, material):
 @pytest.mark.parametrize(("material", "alike"), [("0 0 0", True), ("0 0 27", False)])
 def test_a_continuation_becomes_a_scene_with_tangential_springs_at_rest(tmp_path, capsys, material, alike):
     deck, scene = continued(tmp_path, material)
-    said = "begins without the tangential springs of 1 contacts"
+    said = "leaves out the tangential springs of 1 contact: "
     assert (said in capsys.readouterr().out) != alike
     for model in (deck, scene):
         model.advance(100)

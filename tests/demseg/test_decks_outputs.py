@@ -8,8 +8,10 @@ import pytest
 from porescale.cli import demseg
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
+from porescale.dem.measures.contacts import contacts
 from porescale.demseg.build import Options
 from porescale.demseg.deck import read_deck
+from porescale.demseg.outputs import contact_cloud
 from porescale.demseg.run import read
 from porescale.output.deck_pictures import places_of_bodies, write_deck_pictures
 from tests.reference import decks
@@ -115,6 +117,18 @@ def test_a_chain_that_breaks_counts_its_emissions_and_lists_its_breaks(tmp_path)
     first = rows(tmp_path / "out" / "cont.dat")[:3]
     assert first[0] == [0, 0.0, 2]
     assert np.abs(np.array(first[1:])[:, 4:]).max() < 1e-5
+
+
+def test_bonded_discs_have_one_row_beside_a_segment_too(tmp_path):
+    chain = decks.chain(3).replace("3 0 0", "3 1 0") + "4 1 1\n0 0 0\n1 60 70\n65 70\n"
+    bonds = "1 1\n2 -2.0d7\n2 2\n1 -2.0d7\n3 -2.0d7\n3 1\n2 -2.0d7\n4 0\n"
+    folder = decks.write(tmp_path / "deck", chain, decks.boundary("3 0 1 1 1"), in_cf0=bonds)
+    model = read(folder, Options())
+    cloud = contact_cloud(model.built)
+    assert np.column_stack((cloud["body"], cloud["other"])).tolist() == [[1, 2], [2, 3]]
+    assert np.abs(cloud["normal_force"]).max() < 1e-5  # contact and bond cancel, to the round-off of 1e8 50 eps
+    # The check that must fail: the list itself has two rows of each.
+    assert contacts(model.grains).count == 4
 
 
 def test_a_disc_that_touches_nothing_at_first_leaves_its_contacts_all_the_same(tmp_path):

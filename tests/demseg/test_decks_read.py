@@ -1,5 +1,7 @@
 """Decks of DEMseg are read as Fortran reads them; what is wrong in one is said by file, line, field and expectation."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -36,6 +38,38 @@ def test_what_is_no_real_is_no_comment_either(tmp_path, word):
     file.write_text(f"1 {word} 2\n3 4\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"line 1, b = '.*': is no number"):
         Reader(file).record(("a", float), ("b", float), ("c", float))
+
+
+@pytest.mark.parametrize(
+    "comment", ["information", "- stiffness", "nano", "infinite", "...", ".", "*", "*note*", "+", "nancy 2", "- 2"]
+)
+def test_words_that_only_begin_as_a_number_may_are_a_comment(tmp_path, comment):
+    file = tmp_path / "a.dat"
+    file.write_text(f"1 {comment}\n2 3\n", encoding="utf-8")
+    reader = Reader(file)
+    assert reader.record(*((name, float) for name in "abc")) == [1.0, 2.0, 3.0]
+    reader.done()
+
+
+@pytest.mark.parametrize("word", ["-1x", "+.5x", "2*x", "3*", "Infinity", "+NaN", ".5.", "--1"])
+def test_words_that_begin_with_a_digit_or_are_no_finite_number_are_refused(tmp_path, word):  # the check that must fail
+    file = tmp_path / "a.dat"
+    file.write_text(f"1 {word} 2\n3 4\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"line 1, b = '.*': is no number"):
+        Reader(file).record(("a", float), ("b", float), ("c", float))
+
+
+def test_mode_0_refuses_more_discs_than_a_deck_may_have(tmp_path):
+    from porescale.demseg.deck import MOST_BODIES, Random
+
+    domain = (0.0, 1.0, 0.0, 1.0)
+    fits = (1.0 / (2.0 * math.pi * MOST_BODIES)) ** 0.5  # of a void ratio of 1
+    assert Random(fits, fits, 1, 1.0).count(domain) == MOST_BODIES
+    assert Random(1e-170, 1e-170, 1, 1.0).count(domain) == MOST_BODIES + 1
+    random = "0 0 0\n5.0d-5 0 -980\n1\n1 1 1 0 0 20\n0 1 0 1 0\n{0} {0}\n1\n1.0\n"
+    assert read_deck(decks.write(tmp_path / "fits", random.format(1.001 * fits))).random is not None
+    with pytest.raises(InputError, match=r"line 8, void ratio = 1: makes no sense, expected a larger one, or larger"):
+        read_deck(decks.write(tmp_path / "more", random.format(0.99 * fits)))
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])

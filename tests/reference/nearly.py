@@ -36,6 +36,8 @@ ADDED: dict[str, Any] = {
     "polygon": [{"corners": [[0, 0], [0.003, 0], [0, 0.003]], "thickness": 1e-4, "at": [[0.005, 0.005]]}],
 }  # fmt: skip
 """Sections that a scene may get."""
+WORDLESS = "refused without a word"
+"""How a mutant ends whose refusal says nothing."""
 MOST_BYTES = 20e6
 """Of memory, of a scene that is built."""
 
@@ -125,7 +127,7 @@ def bytes_of(report: Any) -> float:
 
 
 def judged(source: tuple[Path, Package, dict[str, Any]], seed: int, *, build: bool = False) -> str:
-    """What becomes of one mutant: "refused" or "checked", or "built"; any other error is let out."""
+    """What becomes of one mutant: "refused", WORDLESS, "checked", or "built"; any other error is let out."""
     file, package, table = source
     try:
         scene = validate(package.scene(), mutant(table, seed), folder=file.parent)
@@ -134,12 +136,12 @@ def judged(source: tuple[Path, Package, dict[str, Any]], seed: int, *, build: bo
             return "checked"
         package.build(scene)
     except InputError as error:
-        return "refused" if str(error).strip() else "refused without a word"
+        return "refused" if str(error).strip() else WORDLESS
     return "built"
 
 
 def main() -> int:
-    """Exit code 1 if any mutant ended with another error than a refusal."""
+    """Exit code 1 if any mutant ended with another error than a refusal, or was refused without a word."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--count", type=int, default=1000, help="mutants in all")
     parser.add_argument("--seed", type=int, default=0, help="number of the first")
@@ -149,12 +151,14 @@ def main() -> int:
     for seed in range(words.seed, words.seed + words.count):
         source = every[seed % len(every)]
         try:
-            ends[judged(source, seed, build=words.build)] += 1
+            ends[end := judged(source, seed, build=words.build)] += 1
+            if end == WORDLESS:
+                print(f"{source[0].parent.name}, seed {seed}: {end}", flush=True)
         except Exception:
             found += 1
             print(f"{source[0].parent.name}, seed {seed}:\n{traceback.format_exc(limit=-4)}", flush=True)
     print(", ".join(f"{count} {name}" for name, count in sorted(ends.items())), f"and {found} with a traceback")
-    return int(found > 0)
+    return int(found + ends[WORDLESS] > 0)
 
 
 if __name__ == "__main__":

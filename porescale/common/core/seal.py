@@ -2,7 +2,8 @@
 
 The last bytes of a sealed file are ``MARK`` and the SHA-256 digest, 32 bytes, of all before them.  HDF5 knows where its
 part ends and does not read what follows, so that programs that know nothing of seals read a sealed file as before.
-Checksums of single datasets would leave out attributes, names, types, and the tables that lead to them.
+Checksums of single datasets would leave out attributes, names, types, and the tables that lead to them.  A seal is
+compared by who asks `sealed`: a resume does, `checkpoint.read_header`, which reads how far a run came, does not.
 """
 
 import hashlib

@@ -70,7 +70,10 @@ def read_checkpoint(path: Path, skip: str = "") -> dict[str, Any]:
 
 
 def read_header(path: Path) -> dict[str, Any]:
-    """The checkpoint's top-level entries without the state: quick, whatever its size."""
+    """The checkpoint's top-level entries without the state: quick, whatever its size.
+
+    The seal is not looked at, which would take reading all of the file: edited entries are given as they stand.
+    """
     return read_checkpoint(path, skip="state")
 
 
