@@ -40,12 +40,14 @@ def test_a_restored_run_has_the_push_of_a_body_force(steps):
 
 
 def test_the_loads_of_a_restored_scene_are_those_of_the_saved_one():
-    def made(**more):
+    def made():
         return build(Scene(
             domain={"width": 0.01, "height": 0.01, "left": "periodic", "right": "periodic"}, time={"end": 1.0},
             output={"snapshot_interval": 1.0, "series_interval": 1.0}, gravity=(0.0, 0.0),
             disc=[{"x": 0.005, "y": 0.004, "diameter": 0.003}], loads={"discs": [0]},
-            fluid={"density": 1000, "viscosity": 1e-5, "spacing": 2.5e-4, "relaxation_time": 0.8, "body_force": (1.0, 0.0)}, **more,
+            fluid={
+                "density": 1000, "viscosity": 1e-5, "spacing": 2.5e-4, "relaxation_time": 0.8, "body_force": (1.0, 0.0),
+            },
         ))  # fmt: skip
 
     saved, again = made(), made()
