@@ -12,7 +12,7 @@ LADDERS = Ladders()
 ROWS = (10, 20, 40, 80)
 BECAUSE = (
     "no order is expected: half of the row at the floor is held, 0.5/N of what drives; noise of stress takes friction"
-    " away, and so do columns of soil that turn like books on a shelf, both the more the finer the soil is"
+    " away, and so do upright columns of soil that rotate side by side, both the more the finer the soil is"
 )
 
 
