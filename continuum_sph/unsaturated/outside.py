@@ -54,7 +54,7 @@ def cover(count, start, partner, x, volume, covered, h, period_x, period_y):
 @dataclass
 class Level:
     """Water over a strip from ``left`` to ``right`` and above ``bottom`` (m), kept at ``levels`` (k,) m at ``times``
-    (k,) s, straight lines between.  let_in : water that has gone into soil so far, kg/m."""
+    (k,) s, straight lines between."""
 
     name: str
     left: float
@@ -62,7 +62,6 @@ class Level:
     bottom: float
     times: Floats
     levels: Floats
-    let_in: float = 0.0
 
     def at(self, time: float) -> float:
         """Level (m) at a ``time`` (s)."""

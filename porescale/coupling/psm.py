@@ -116,6 +116,7 @@ class SaturatedCells:
         self.pairs = np.zeros((0, 2), np.int64)
         self._placed = np.full((discs, 2), np.nan)  # centres for which the patches are filled
         self._stands = np.zeros(self._placed.shape, np.bool_)
+        self._summed = False  # whether the areas that the body force pushes are those of the patches
         self._covered: Reals | None = None
         self._set_loads(count, np.asarray(fluid.force))
         self._theta = np.zeros(count)
@@ -171,14 +172,27 @@ class SaturatedCells:
         self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * self._drive[:discs]
 
     def _push_bodies(self) -> None:
-        """What the body force would do to the fluid where the bodies are, which is theirs to bear (push.py)."""
-        where = self._patches, (self.periodic_x, self.periodic_y), self._shape
-        if self.operator.force_everywhere:
-            covered_area(*where, self._taken)
-        else:
-            held_area(*where, self._half_rate, self._laws[0], self._taken)
-        self._taken += self.beyond
+        """What the body force would do to the fluid where the bodies are, which is theirs to bear (push.py).
+
+        The areas are summed where a patch was filled since.
+        """
+        if not self._summed:
+            where = self._patches, (self.periodic_x, self.periodic_y), self._shape
+            if self.operator.force_everywhere:
+                covered_area(*where, self._taken)
+            else:
+                held_area(*where, self._half_rate, self._laws[0], self._taken)
+            self._taken += self.beyond
+            self._summed = True
         np.multiply(self._taken[:, None], self._drive, out=self.push)
+
+    def find_push(self, fluid: Fluid, centre: Reals, velocity: Reals, spin: Reals) -> None:
+        """Set ``push`` as a step does that begins with the discs there; the state is as before, to the bit."""
+        motion = self._place(centre, velocity, spin)
+        if fluid.force_field is not None:
+            self._follow_force(fluid.force_field, motion.centre)
+        if self.driven:
+            self._push_bodies()
 
     @property
     def covered(self) -> Reals:
@@ -237,6 +251,7 @@ class SaturatedCells:
         self, centre: Reals, velocity: Reals, spin: Reals, radius: Reals, soft_rim: SoftRim | None
     ) -> Motion:
         """The same, with discs of ``radius`` (n,) cells."""
+        self._summed = False
         cover(centre, radius, self._patches, self._lines)
         if len(self.pairs):
             subtract_overlap(centre, radius, self.pairs, self._patches)

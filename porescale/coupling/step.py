@@ -136,17 +136,23 @@ class Coupled:
             square = (wet.covering_radius / wet.radius) ** 2
             self.inner_mass[seen] = self._displaced.mass[seen] * square
             self.inner_inertia[seen] = self._displaced.inertia[seen] * square**2
-        if wet.driven:
-            np.multiply(wet.push[seen], self._units[0], out=self.push[seen])
+        self._take_push()
         cells = CellLoad(wet.force, wet.torque, wet.entrained)
         self.immersed.respond(cells, self._units, discs.velocity, discs.spin[seen], step)
         if self.polygons:
             p = self.polygons
             cells = CellLoad(wet.polygon_load[:, :2], wet.polygon_load[:, 2], wet.polygon_entrained)
-            if wet.driven:
-                np.multiply(wet.push[seen.stop : seen.stop + p.polygons.count], self._units[0], out=p.push)
             p.respond(cells, self._units, p.velocity, p.spin, step)
             p.distribute(self.immersed)
+
+    def _take_push(self) -> None:
+        """What the body force on the fluid does to discs and polygons, N/m."""
+        wet, first = self.saturated, self._seen.stop
+        if wet.driven:
+            np.multiply(wet.push[:first], self._units[0], out=self.push[:first])
+            if self.polygons:
+                own = self.polygons.push
+                np.multiply(wet.push[first : first + len(own)], self._units[0], out=own)
 
     def _move_bodies(self) -> None:
         """The contact steps, under the load of the fluid step."""
@@ -228,13 +234,22 @@ class Coupled:
         return state | ({"polygons": self.polygons.state()} if self.polygons else {})
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Restore a state of a system with the same setup."""
+        """Restore a state of a system with the same setup.
+
+        The push is found anew, where the bodies are: a step's is that where they began it, which is the same but for
+        the motion of one step.  Of rectangles and rings, the rest of the load is 0 until the next step.
+        """
         self.fluid.restore(state["fluid"])
         self.grains.restore(state["grains"])
         self.saturated.restore(state["saturated"])
         self.immersed.restore(state)
         if self.polygons:
             self.polygons.restore(state["polygons"])
+        if self.fluid.step:
+            self.saturated.find_push(self.fluid, *self._seen_motion())
+            self._take_push()
+            if self.polygons:
+                self.polygons.distribute(self.immersed)
 
 
 def response_share(grains: Grains, inside: Displaced, layer: float, seen: slice) -> Reals:

@@ -112,10 +112,33 @@ def test_departures_have_a_tolerance_where_the_error_is_theirs() -> None:
 
 
 def test_a_number_beyond_two_per_cent_is_doubtful_unless_it_keeps_a_bound() -> None:
-    row = {"name": "r.a", "reference": 1.0, "measured": 1.1, "error": 0.1, "tolerance": 0.2, "because": "so"}
+    row = {"name": "r.a", "reference": 1.0, "measured": 1.1, "error": 0.1, "tolerance": 0.2, "because": "so",
+           "passed": True}  # fmt: skip
     assert validation_files.doubtful([row])[2:] == ["| r.a | +10.0 % | 0.2 | so |"]
     assert validation_files.doubtful([row | {"measured": 1.01, "error": 0.01}])[2:] == []
     assert validation_files.doubtful([row | {"error": 0.0}])[2:] == []
+
+
+def test_a_row_that_failed_stands_first_whatever_its_numbers() -> None:
+    far = {"name": "r.far", "reference": 1.0, "measured": 9.0, "error": 8.0, "tolerance": 9.0, "because": "so",
+           "passed": True}  # fmt: skip
+    raised = far | {"name": "r.raised", "reference": None, "measured": None, "error": None, "passed": False}
+    several = far | {
+        "name": "r.several",
+        "reference": [1.0, 1.0],
+        "measured": [1.0, None],
+        "error": None,
+        "passed": False,
+    }
+    near = far | {"name": "r.near", "measured": 1.001, "error": 0.001, "tolerance": 0.0001, "passed": False}
+    for fails, off in ((raised, "no number"), (several, "no number"), (near, "+0.1 %")):
+        lines = validation_files.doubtful([far, fails])[2:]
+        assert [line.partition(" |")[0] for line in lines] == [f"| {fails['name']} **fails**", "| r.far"]
+        assert off in lines[0]
+    # The check that must fail: the same numbers of a row that passed.
+    assert [line.partition(" |")[0] for line in validation_files.doubtful([far, near | {"passed": True}])[2:]] == [
+        "| r.far"
+    ]
 
 
 def test_verify_keeps_rows_that_others_ran(tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ class Levee(FullLevee):
 
     def safety(self, flow: MoistSoil) -> tuple[float, Circle]:
         """(least factor of the land side by Bishop's simplified method under the pore pressures of now, its circle), of
-        circles at least 1.5 SHALLOW particles' rows deep: 0.1 of the height."""
+        circles that cut at least 0.1 of the height deep."""
         _, _, edge, toe = self.corners
         run = toe - edge
         centres = [

@@ -15,7 +15,8 @@ from porescale.scene.contact import Contact
 from porescale.scene.scene import Scene
 
 PLACES, TIMES = 16, 200
-"""Places along each direction, and times, at which laws of place and time are looked at before a run."""
+"""Places along each direction, and times, at which laws of place and time are looked at before a run: one time in each
+two-hundredth of it, at random (of a fixed seed), so that no motion has the rhythm of the looks."""
 MOST = {"m/s": 1e6, "N/m^3": 1e9}
 """Largest speed and force density that a law may give: what lies beyond is a slip."""
 
@@ -58,9 +59,9 @@ def inflow_peak(scene: Scene, name: str) -> float:
     return looked.largest if looked else 0.0
 
 
-def inflow_rate(scene: Scene, name: str) -> float:
-    """How fast that velocity changes, rad/s: see `Looked`."""
-    looked = _inflow(scene, name)
+def inflow_rate(scene: Scene, name: str, step: float) -> float:
+    """How fast that velocity changes, rad/s: see `Looked`;  step: of the fluid, s."""
+    looked = _inflow(scene, name, step)
     return looked.rate if looked else 0.0
 
 
@@ -71,42 +72,54 @@ def largest_force(scene: Scene) -> float:
     return looked.largest
 
 
-def force_rate(scene: Scene) -> float:
-    """How fast that force changes, rad/s; 0 of a constant one."""
-    looked = _force(scene)
+def force_rate(scene: Scene, step: float) -> float:
+    """How fast that force changes, rad/s; 0 of a constant one;  step: of the fluid, s."""
+    looked = _force(scene, step)
     return looked.rate if looked else 0.0
 
 
 class Looked(NamedTuple):
-    """What a law was seen to give: its ``largest`` length, and its ``rate``, rad/s: the largest change between two
-    times that it was looked at over half the reach of what it gives at one place."""
+    """What a law was seen to give: its ``largest`` length, and its ``rate``, rad/s: the largest slope between two times
+    that it was looked at over half the reach of what it gives at one place.
+
+    Where rates are asked for, each look is two, a step of the fluid apart: the slope between them is that of all motion
+    that the fluid can follow.  What lasts less than a two-hundredth of the run may lie between the looks.
+    """
 
     largest: float
     rate: float
 
 
-def _inflow(scene: Scene, name: str) -> Looked | None:
+def _inflow(scene: Scene, name: str, step: float = 0.0) -> Looked | None:
     side, box = scene.domain.side(name), scene.domain
     if not isinstance(side.velocity, OwnLaw):
         return None
     length = box.height if name in ("left", "right") else box.width
     places = [((k + 0.5) / PLACES * length,) for k in range(PLACES)]
-    return _look(f"domain.{name}.velocity", side.velocity, places, scene.time.end, "m/s")
+    return _look(f"domain.{name}.velocity", side.velocity, places, times_of_looks(scene.time.end, step), "m/s")
 
 
-def _force(scene: Scene) -> Looked | None:
+def _force(scene: Scene, step: float = 0.0) -> Looked | None:
     law, box = scene.fluid.body_force if scene.fluid else None, scene.domain
     if not isinstance(law, OwnLaw):
         return None
     shares = [(k + 0.5) / PLACES for k in range(PLACES)]
     places = [(x * box.width, y * box.height) for x in shares for y in shares]
-    return _look("fluid.body_force", law, places, scene.time.end, "N/m^3")
+    return _look("fluid.body_force", law, places, times_of_looks(scene.time.end, step), "N/m^3")
 
 
-def _look(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], end: float, unit: str) -> Looked:
-    """What a law gives at some places (m) and times up to ``end`` (s)."""
+def times_of_looks(end: float, step: float) -> Sequence[float]:
+    """Times (s) at which a law is looked at in a run up to ``end``, ascending; each with one a step later, if > 0."""
+    shares = (np.arange(TIMES) + np.random.default_rng(0).random(TIMES)) / TIMES
+    looks = shares * max(end - step, 0.0)
+    found: list[float] = np.unique(np.concatenate(([0.0, end], looks, np.minimum(looks + step, end)))).tolist()
+    return found
+
+
+def _look(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], times: Sequence[float], unit: str) -> Looked:
+    """What a law gives at some places (m) and times (s), which ascend."""
     timed = law.function.__code__.co_argcount > len(places[0])
-    times = [end * k / TIMES for k in range(TIMES + 1)] if timed else [0.0]
+    times = times if timed else [0.0]
     try:
         compiled = compile_for(law, *places[0], *times[: 1 if timed else 0], count=2)
     except InputError as error:
@@ -124,7 +137,7 @@ def _look(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], end: float
     if not timed:
         return Looked(largest, 0.0)
     reach = 0.5 * float(np.ptp(given, axis=0).max())
-    steepest = float(np.abs(np.diff(given, axis=0)).max()) * TIMES / end
+    steepest = float((np.abs(np.diff(given, axis=0)).max(axis=(1, 2)) / np.diff(times)).max())
     return Looked(largest, steepest / reach if reach > 1e-9 * largest else 0.0)
 
 

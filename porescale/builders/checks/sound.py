@@ -24,7 +24,7 @@ GATE_HEAD = 0.75
 def check_sound(scene: Scene, scales: Scales, warnings: list[str]) -> None:
     """Warn of motion that changes while sound crosses the box."""
     size = max(scene.domain.width, scene.domain.height)
-    for what, rate in rates(scene):
+    for what, rate in rates(scene, scales.step):
         turn = rate * size / scales.sound_speed
         if turn > SOUND_WARN:
             warnings.append(
@@ -34,10 +34,10 @@ def check_sound(scene: Scene, scales: Scales, warnings: list[str]) -> None:
             )
 
 
-def rates(scene: Scene) -> Iterator[tuple[str, float]]:
-    """Everything that changes the flow with time: what it does, and how fast it changes, rad/s.
+def rates(scene: Scene, step: float) -> Iterator[tuple[str, float]]:
+    """Everything that changes the flow with time: what it does, and how fast it changes, rad/s;  step: of the fluid, s.
 
-    A sine changes at its pulsation, a table at its steepest slope over the range of its values.
+    The steepest slope over half the range of values: of a sine its pulsation.  So for tables and laws of a user's, too.
     """
     for k, it in enumerate(scene.disc):
         yield f"disc {k} swings", max(rate_of(it.velocity_x), rate_of(it.velocity_y))
@@ -45,8 +45,8 @@ def rates(scene: Scene) -> Iterator[tuple[str, float]]:
         given = [fn for axis in (control.x, control.y) for fn in (axis.velocity, axis.displacement, axis.force)]
         yield f"what control {k} moves swings", max(map(rate_of, given))
     for name in scene.domain.sides:
-        yield f"the velocity of the {name} side changes", inflow_rate(scene, name)
-    yield "fluid.body_force changes", force_rate(scene)
+        yield f"the velocity of the {name} side changes", inflow_rate(scene, name, step)
+    yield "fluid.body_force changes", force_rate(scene, step)
 
 
 def rate_of(course: TimeFunction | None) -> float:
@@ -54,7 +54,7 @@ def rate_of(course: TimeFunction | None) -> float:
     if course is None:
         return 0.0
     if course.times:
-        reach = max(course.values) - min(course.values)
+        reach = 0.5 * (max(course.values) - min(course.values))
         return course.steepest / reach if reach else 0.0
     return 2 * math.pi * course.frequency if course.amplitude else 0.0
 

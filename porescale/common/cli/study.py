@@ -145,7 +145,8 @@ def _convergence(package: Package) -> Callable[..., int]:
     ) -> int:
         """Run experiments with known answers at several resolutions: errors, and the order at which they fall.
 
-        Ladders that are not named stay in the files as they were.  Exit code 1 if an order does not hold.
+        The files are written after each ladder; those that are not named stay in them as they were.  Exit code 1 if an
+        order does not hold, or if a ladder ended with an exception.
         """
         from porescale.common.evidence import convergence_files as study
         from porescale.common.record.card import short_commit
@@ -165,7 +166,7 @@ def _convergence(package: Package) -> Callable[..., int]:
             made.append(it.run())
             kept[it.name] = made[-1].as_dict() | mark
             say(f"{it.name}: order {study.number(made[-1].measured)} ({made[-1].seconds:.1f} s)")
-        study.write(folder, about, [kept[it.name] for it in register if it.name in kept])
+            study.write(folder, about, [kept[it.name] for it in register if it.name in kept])
         if json:
             print_json(row.as_dict() for row in made)
         else:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from porescale.common.evidence.files import finite
-from porescale.common.evidence.register import Register
+from porescale.common.evidence.register import Register, what_raised
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,8 @@ class Row:
 
     errors : one for each of ``levels``;  measured : order, see `order_of`, None where it cannot be computed;  expected,
     within, because : as of the `Ladder`;  holds : whether the measured order is at least the expected one less
-    ``within``, None where no order is expected.
+    ``within``, None where no order is expected; False of a
+    ladder that ended with an exception, whose text is ``because``.
     """
 
     name: str
@@ -85,16 +86,25 @@ class Ladder:
     measure: Callable[[float], float]
 
     def run(self) -> Row:
-        """Measure at every level, from coarse to fine."""
-        start = time.perf_counter()
-        errors = [float(self.measure(level)) for level in self.levels]
+        """Measure at every level, from coarse to fine.
+
+        After an exception the errors of its level and of finer ones are nan, ``because`` is its text, and the order
+        does not hold, even where none is expected.
+        """
+        start, because, raises = time.perf_counter(), self.because, False
+        errors = [math.nan] * len(self.levels)
+        try:
+            for k, level in enumerate(self.levels):
+                errors[k] = float(self.measure(level))
+        except Exception as raised:  # whatever a ladder does must not end the others
+            because, raises = what_raised(raised), True
         measured = order_of(self.levels, errors)
-        holds = None
+        holds = False if raises else None
         if self.expected is not None:
             holds = measured is not None and measured >= self.expected - self.within
         seconds = time.perf_counter() - start
         return Row(
-            self.name, self.title, self.along, self.levels, errors, measured, self.expected, self.within, self.because,
+            self.name, self.title, self.along, self.levels, errors, measured, self.expected, self.within, because,
             holds, seconds,
         )  # fmt: skip
 

@@ -1,5 +1,6 @@
 """Registers: rows of evidence by name, registered in the files that make them and found by looking into a folder."""
 
+import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
@@ -68,6 +69,13 @@ def choose(requested: Sequence[str], known: Iterable[str], what: str) -> list[st
         raise InputError([Fault(name, None, f"no such {what}", repair=repair[name]) for name in unknown])
     wanted = {other for found in below.values() for other in found}
     return [name for name in names if not requested or name in wanted]
+
+
+def what_raised(raised: Exception) -> str:
+    """The class and text of an exception on one line, with the function and line that raised it."""
+    place = traceback.extract_tb(raised.__traceback__)[-1]
+    text = " ".join(str(raised).split())
+    return f"{type(raised).__name__}: {text} ({place.name}, line {place.lineno})"
 
 
 def discovered(package: str, name: str) -> Callable[[], Any]:

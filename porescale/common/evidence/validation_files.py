@@ -76,17 +76,24 @@ def table(rows: Sequence[Stored]) -> list[str]:
 
 
 def doubtful(rows: Sequence[Stored], beyond: float = 0.02) -> list[str]:
-    """Lines of a Markdown table of the rows of which a number is further ``beyond`` its reference, the worst first.
+    """Lines of a Markdown table of the rows that failed, first, whatever their numbers, and of those of which a number
+    is further ``beyond`` its reference, or is none, the worst first.
 
-    Rows whose error is 0 are left out: their reference is a bound, which their numbers keep.
+    Rows that passed with an error of 0 are left out: their reference is a bound, which their numbers keep.
     """
     worst = []
     for row in rows:
         off, _ = departures(row)
-        if row["error"] != 0 and off.size and np.abs(off).max() > beyond:
-            worst.append((float(off[np.abs(off).argmax()]), row))
-    worst.sort(key=lambda pair: -abs(pair[0]))
-    lines = [[row["name"], f"{100 * off:+.1f} %", number(row["tolerance"]), row["because"]] for off, row in worst]
+        share = np.where(np.isnan(off), math.inf, off)
+        most = float(share[np.abs(share).argmax()]) if off.size else math.nan
+        if not row["passed"] or (row["error"] != 0 and abs(most) > beyond):
+            worst.append((most, row))
+    worst.sort(key=lambda pair: (pair[1]["passed"], -abs(pair[0]) if math.isfinite(pair[0]) else -math.inf))
+    lines = []
+    for most, row in worst:
+        shown = f"{100 * most:+.1f} %" if math.isfinite(most) else "no number"
+        name = row["name"] + ("" if row["passed"] else " **fails**")
+        lines.append([name, shown, number(row["tolerance"]), row["because"]])
     return files.markdown_table(["row", "worst number, off by", "allowed", "because"], lines)
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import time
-import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from porescale.common.api.report import shown
 from porescale.common.evidence.files import finite
-from porescale.common.evidence.register import Register
+from porescale.common.evidence.register import Register, what_raised
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -102,9 +101,7 @@ class Validation:
             if error < 0:
                 raise ValueError(f"an error is a distance and cannot be {error}")
         except Exception as raised:  # whatever a validation does must not end the others
-            place = traceback.extract_tb(raised.__traceback__)[-1]
-            text = " ".join(str(raised).split())
-            because = f"{type(raised).__name__}: {text} ({place.name}, line {place.lineno})"
+            because = what_raised(raised)
             error = math.nan
         seconds = time.perf_counter() - start
         passed = error <= self.tolerance

@@ -1,5 +1,6 @@
 """`verify --out` and `study convergence`: what they keep, what other runs leave, and their exit codes."""
 
+import contextlib
 import json
 from collections.abc import Callable
 from dataclasses import replace
@@ -64,6 +65,37 @@ def test_convergence_keeps_ladders_and_fails_where_an_order_does_not_hold(study)
     assert [round(row["measured"], 6) for row in rows.values()] == [1.5, 5.0]  # the other as it was
     assert [row["holds"] for row in rows.values()] == [False, True]
     assert "toy.one **fails**" in Path("seen/convergence.md").read_text(encoding="utf-8")
+
+
+def test_a_ladder_that_raises_loses_no_other_and_fails(study, monkeypatch) -> None:
+    def raises(level: float) -> float:
+        if level > LEVELS[0]:
+            raise ZeroDivisionError("nothing to divide by")
+        return 0.5
+
+    made = Ladders()
+    for name, measure in (("toy.one", lambda level: level**-2.0), ("toy.two", raises), ("toy.six", lambda _: 0.1)):
+        made.ladder(name, title="t", along="cells", levels=LEVELS, because="so")(measure)
+    monkeypatch.setitem(globals(), "ladders", lambda power: made)
+    assert study(2.0, "--out", "seen")[0] == 1
+    rows = kept("seen/convergence.json")
+    assert {name: row["holds"] for name, row in rows.items()} == {"toy.one": None, "toy.two": False, "toy.six": None}
+    assert rows["toy.two"]["errors"] == [0.5, None, None]
+    assert rows["toy.two"]["because"].startswith("ZeroDivisionError: nothing to divide by (raises, line ")
+    assert study(2.0, "toy.one", "--out", "seen")[0] == 0  # the check that must fail: without it all is well
+
+
+def test_convergence_keeps_each_ladder_as_soon_as_it_is_run(study, monkeypatch) -> None:
+    def interrupted(level: float) -> float:
+        raise KeyboardInterrupt
+
+    made = Ladders()
+    for name, measure in (("toy.one", lambda level: level**-2.0), ("toy.two", interrupted)):
+        made.ladder(name, title="t", along="cells", levels=LEVELS, because="so")(measure)
+    monkeypatch.setitem(globals(), "ladders", lambda power: made)
+    with contextlib.suppress(KeyboardInterrupt):  # a command may answer it with an exit code
+        study(2.0, "--out", "seen")
+    assert list(kept("seen/convergence.json")) == ["toy.one"]
 
 
 def test_convergence_lists_and_prints(study) -> None:
