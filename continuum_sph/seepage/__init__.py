@@ -15,7 +15,7 @@ balance (n/K_w) dp/dt + ∇·(n (v_f - v_s)) + ∇·v_s = 0 is then
 
 which is continuity of one fluid with q for v and V for m/ρ.  A porosity that jumps needs no gradient: q does not jump.
 
-Work.  The compression of water takes up Σ m p/ρ_f² dρ_f/dt = -Σ V_i p_i (∇·q)_i = Σ f_i·q_i with the forces
+Work.  The compression of water takes up Σ m p/ρ_f² dρ_f/dt = -Σ V_i p_i (∇·q)_i = -Σ f_i·q_i with the forces
 
     f_i = -V_i Σ_j V_j (p_i + p_j) ∇W_ij
 

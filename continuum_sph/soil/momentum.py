@@ -24,8 +24,9 @@ they weigh (`SoilFlow` refuses others).  By how much soil has come apart it keep
 a tongue that gave volume away is the denser, up to a fifth, once it has closed, until it has its neighbours' volume.
 
 Mean p of the surroundings less p, for `plasticity`: -Σ V_j (p_j - p_i) (1/r) W' / 2π W(0), with partners in walls.  The
-integral of -(1/r) W' is 2π W(0), so inside soil it is the mean of the partners less p, and zero for linear p; near a
-surface, where half of the partners are missing, it counts half.  What one particle gains its partner loses.
+integral of -(1/r) W' is 2π W(0), so inside soil it is the mean of the partners less p, and zero for linear p.  At a
+free surface partners are missing on one side, so p that grows with depth gains: 44 % in the top row of level ground,
+1 % in the second, a strength that falls with the spacing.  Weighted by volume, what one gains its partner loses.
 """
 
 from typing import Any, NamedTuple

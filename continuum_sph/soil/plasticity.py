@@ -50,9 +50,9 @@ def returned(p, r, excess, area, shear, row):
         flow = (r - slope * p - cohesion) / (shear + slope * area * dilatancy)
         new_r = r - shear * flow
         new_p = p + area * dilatancy * flow
-        if new_r < 0.0:  # beyond the tip
+        if new_r < 0.0:  # beyond the tip; or by round-off, where the surroundings bear nothing
             new_r = 0.0
-            new_p = -tension
+            new_p = -tension if p < 0.0 else new_p
     opened = 0.0
     if new_p - new_r < -tension or (new_r == 0.0 and new_p <= -tension and p < new_p):
         flow = max(0.0, (r - p - tension) / (shear + area))

@@ -1,13 +1,14 @@
 """Equations as MathML, written when the manual is built: no script and no font is loaded to show them.
 
-docutils turns LaTeX into MathML.  What it does not know stops the build: a warning names the page, the equation and the
-word.  Every browser of today shows MathML by itself.
+latex2mathml turns LaTeX into MathML.  What it does not know stops the build: a warning names the page, the equation and
+the word.  Every browser of today shows MathML by itself; bold letters need the style sheet.
 """
 
 from typing import Any
 
 from docutils import nodes
-from docutils.utils.math import MathError, latex2mathml, pick_math_environment
+from docutils.utils.math import pick_math_environment
+from latex2mathml.converter import convert
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
@@ -15,17 +16,19 @@ LOG = logging.getLogger(__name__)
 
 
 def mathml(text: str, node: nodes.Node, block: bool) -> str:
-    """MathML of LaTeX; an empty string, and a warning at the node, where docutils does not know a word of it."""
+    """MathML of LaTeX; an empty string, and a warning at the node, where a word of it is not known."""
     code = text.strip()
-    if block and "\\begin{" not in code[:8]:
-        environment = pick_math_environment(code)
-        if environment == "align*":
-            code = f"\\begin{{align*}}\n{code}\n\\end{{align*}}"
+    if block and "\\begin{" not in code[:8] and pick_math_environment(code) == "align*":
+        code = f"\\begin{{align*}}\n{code}\n\\end{{align*}}"
     try:
-        return str(latex2mathml.tex2mathml(code, as_block=block))
-    except (MathError, AttributeError, IndexError, ValueError) as fault:
-        LOG.warning("equation not understood: %s: %s", fault, code, location=node, type="math")
+        found: str = convert(code, display="block" if block else "inline")
+    except Exception as fault:  # of many kinds, none of which is documented
+        LOG.warning("equation not understood: %s: %r", code, fault, location=node, type="math")
         return ""
+    if "\\" in found:  # words that it does not know are left as they are
+        LOG.warning("equation not understood: %s: unknown word", code, location=node, type="math")
+        return ""
+    return found
 
 
 def visit_math(self: Any, node: nodes.math) -> None:

@@ -10,10 +10,11 @@ from porescale.common.evidence.convergence import Ladders
 
 LADDERS = Ladders()
 ROWS = (10, 20, 40, 80)
-BECAUSE = (
-    "no order is expected: half of the row at the floor is held, 0.5/N of what drives; noise of stress takes friction"
-    " away, and so do columns of soil that turn like books on a shelf, both the more the finer the soil is"
+HELD = "no order is expected: half of the row at the floor is held, 0.5/N of what drives; "
+ROTATING = (
+    HELD + "upright columns of soil that rotate side by side are weaker, and form the easier the finer the soil is"
 )
+NOISY = HELD + "noise of stress takes friction away, the more the finer the soil is"
 
 
 @LADDERS.ladder(
@@ -21,7 +22,7 @@ BECAUSE = (
     title="Relative error of the friction of an endless layer of strewn particles on a slope of 30°",
     along="rows of particles",
     levels=ROWS,
-    because=BECAUSE,
+    because=ROTATING,
 )
 def friction(rows: float) -> float:
     """Without dilatancy, between 0.75 s and 1.5 s."""
@@ -33,7 +34,7 @@ def friction(rows: float) -> float:
     title="The same on a slope of 28°, 1.4° beyond its limit",
     along="rows of particles",
     levels=ROWS,
-    because=BECAUSE,
+    because=ROTATING,
 )
 def friction_near_the_limit(rows: float) -> float:
     """Without dilatancy, between 0.75 s and 1.5 s."""
@@ -45,7 +46,7 @@ def friction_near_the_limit(rows: float) -> float:
     title="The same on 30°, where each particle yields by its own mean stress",
     along="rows of particles",
     levels=ROWS,
-    because=BECAUSE,
+    because=NOISY,
 )
 def friction_by_own_pressure(rows: float) -> float:
     """Without dilatancy, between 0.75 s and 1.5 s."""

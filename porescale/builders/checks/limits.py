@@ -73,7 +73,7 @@ def coarse(cells: float, solid_operator: str, weighting: str, spacing: float, so
     if needed == float("inf"):
         return f"{bed.strip()} drag is off by a tenth or more at any resolution tried; [permeability] measures it"
     return (
-        f"{cells:.3g} cells per diameter{bed}: below {needed:g} the drag is off by a tenth;"
+        f"{cells:.3g} cells per diameter{bed}: below {needed:g} the drag is off by a tenth or more;"
         f" a spacing of {spacing * cells / needed:.2g} m gives as many"
     )
 

@@ -62,7 +62,7 @@ def table(rows: Sequence[Stored]) -> list[str]:
         steps = ", ".join(f"{level:.3g}: {off:.3g}" for level, off in zip(row["levels"], error, strict=True))
         expected = number(row["expected"])
         if row["expected"] is not None:
-            expected = f"{row['expected']:g}, at least {row['expected'] - row['within']:.2g}"
+            expected = f"{row['expected']:g}, at least {row['expected'] - row['within']:.3g}"
         verdict = " **fails**" if row["holds"] is False else ""
         lines.append([
             row["name"] + verdict, row["title"], row["along"], steps, number(row["measured"]), expected, row["because"],

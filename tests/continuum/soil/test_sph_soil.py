@@ -131,17 +131,19 @@ def test_the_correction_is_the_inverse_where_moments_are_good_and_none_where_the
 @pytest.mark.parametrize(
     "soil", [{}, {"cohesion_intercept": 1e3}, {"cohesion_intercept": 1e3, "tension": 800.0}, {"sin_dilatancy": 0.5}]
 )
-def test_stress_brought_back_lies_on_yield_or_where_it_was(p, r, soil):
+@pytest.mark.parametrize("excess", [0.0, 2e3, -2e3, -2e4])
+def test_stress_brought_back_lies_on_yield_or_where_it_was(p, r, soil, excess):
     material = Material(1e6, 1600.0, **soil)
     row = material.row()
     area, shear = material.area_modulus * 1e6, material.shear_modulus * 1e6
-    q, s, flow, opened = returned.py_func(p, r, 0.0, area, shear, row)
+    q, s, flow, opened = returned.py_func(p, r, excess, area, shear, row)
     slack = 1e-9 * (abs(p) + r)
-    assert s <= material.sin_friction * q + material.cohesion_intercept + slack
+    more = material.sin_friction * max(excess, -max(p, 0.0))  # the mean of the surroundings pulls where p does, too
+    assert 0.0 <= s <= material.sin_friction * q + material.cohesion_intercept + more + slack
     assert q - s >= -material.tension - slack
     assert flow >= 0.0
     assert opened >= 0.0
-    if r <= material.sin_friction * p + material.cohesion_intercept and p - r >= -material.tension:
+    if r <= material.sin_friction * p + material.cohesion_intercept + more and p - r >= -material.tension:
         assert (q, s, flow, opened) == (p, r, 0.0, 0.0)
 
 
