@@ -37,7 +37,7 @@ def course(given: infiltration.Imbibition, end: float) -> Iterator[Seepage]:
 
 
 def frames(given: infiltration.Imbibition, end: float) -> Iterator[NDArray[np.uint8]]:
-    """Pictures of it."""
+    """Pictures of the particles at the times that the figure shows."""
     for both in course(given, end):
         figure, (axes,) = stage(1, 3.0, 6.0)
         sight(axes, given, both, f"t = {both.time:.2f} s")

@@ -80,7 +80,7 @@ class VanGenuchten:
 
     @property
     def m(self) -> float:
-        """1 - 1/n."""
+        """van Genuchten's second exponent, 1 - 1/n (Mualem 1976)."""
         return 1.0 - 1.0 / self.n
 
     def suction(self, effective: Floats | float) -> Floats:

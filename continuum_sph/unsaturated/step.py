@@ -45,7 +45,7 @@ class MoistSoil:
 
     @property
     def time(self) -> float:
-        """Time reached, s."""
+        """Time that both layers have reached, s."""
         return self.ground.time
 
     @property

@@ -118,6 +118,6 @@ class DocstringDirective(SphinxDirective):
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Add the directive."""
+    """Make ``{docstring}`` known to Sphinx."""
     app.add_directive("docstring", DocstringDirective)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

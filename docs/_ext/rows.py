@@ -3,35 +3,25 @@
 A page on a method names the rows that are about it; their numbers have one place, the record that ``verify`` writes.
 """
 
-import json
-from pathlib import Path
 from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-ROOT = Path(__file__).resolve().parents[2]
+from docs._ext.docstring import ROOT
+from porescale.common.evidence.validation_files import number, stored
+
 RECORD = ROOT / "docs" / "evidence" / "rows.json"
 HEAD = ("row", "compared with", "reference", "measured", "error", "tolerance")
-MOST = 4
-"""Numbers of a list that a cell shows."""
-
-
-def text(value: Any, count: int | None = None) -> str:
-    """A number, the first of a list of numbers, or a text, short;  count: how many there are, if not all are given."""
-    if isinstance(value, list):
-        whole = count or len(value)
-        return ", ".join(map(text, value[:MOST])) + f" … {whole} in all" * (whole > MOST)
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def recorded() -> dict[str, list[str]]:
     """The cells of every row that is recorded, by its name."""
     found = {}
-    for row in json.loads(RECORD.read_text(encoding="utf-8")):
-        numbers = [text(row[key], row.get("of")) for key in ("reference", "measured", "error", "tolerance")]
-        found[row["name"]] = [row["name"], row["source"], *numbers]
+    for name, row in stored(RECORD).items():
+        numbers = [number(row[key], row.get("of")) for key in ("reference", "measured", "error", "tolerance")]
+        found[name] = [name, row["source"], *numbers]
     return found
 
 
@@ -65,6 +55,6 @@ class RowsDirective(SphinxDirective):
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Add the directive."""
+    """Make ``{rows}`` known to Sphinx."""
     app.add_directive("rows", RowsDirective)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -3,14 +3,11 @@
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from porescale.analysis.permeability import gebart, kozeny_carman
+from porescale.builders.checks.clear_packing import require_clear_packing
 from porescale.builders.cost import expected_seconds, memory, require_memory, snapshot_bytes
 from porescale.builders.derive import Derived, derive
 from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
-from porescale.builders.initial.grains import frames_of, grains_of
-from porescale.builders.initial.placed import placed
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.builders.kinds import SECTIONS
 from porescale.common.api.report import Report, report_output
@@ -33,7 +30,7 @@ def report(scene: Scene) -> Report:
     """All of the above; raises InputError with every refusal."""
     derived = derive(scene)
     require_memory(derived)
-    _require_clear_packing(scene, derived)
+    require_clear_packing(scene, derived)
     out = Report(scene.title or "scene")
     _parts(scene, out)
     if derived.scales:
@@ -59,26 +56,6 @@ def report(scene: Scene) -> Report:
     for warning in derived.warnings:
         out.warn(warning)
     return out
-
-
-def _require_clear_packing(scene: Scene, derived: Derived) -> None:
-    """InputError, as of the run, where something placed by hand stands in a grain of the packing.
-
-    The packing is made only where something stands in the rectangle that it fills.  What was settled or compressed is
-    kept, and found again by the run.
-    """
-    packing = scene.grains.packing if scene.grains else None
-    if packing is None or scene.rock:
-        return
-    _, x, r = placed(scene)
-    frames = frames_of(scene, derived)
-    low = [*(x - r[:, None]), *(np.min(it.frame.corners, axis=0) for it in frames)]
-    high = [*(x + r[:, None]), *(np.max(it.frame.corners, axis=0) for it in frames)]
-    corner, size = np.array((packing.left, packing.bottom)), np.array((packing.width, packing.height))
-    beside = packing.diameter  # settled ones are higher here than there
-    if any(np.all(one < corner + size + beside) and np.all(other > corner - beside)
-           for one, other in zip(low, high, strict=True)):  # fmt: skip
-        grains_of(scene, derived, frames)
 
 
 def _parts(scene: Scene, out: Report) -> None:

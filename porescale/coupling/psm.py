@@ -63,8 +63,9 @@ class SaturatedCells:
 
     force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,
     ring_torque: on the others, what the fluid inside them takes already given back;  push (discs + polygons + others,
-    2): what the body force does to all of them, not in those loads (push.py);  beyond (of the same length): areas of
-    theirs, cells², that cover no cells but are pushed, set by the owner;  driven: whether there is a body
+    2): what the body force does to all of them, not in those loads (push.py), and of each kind disc_push, polygon_push,
+    rectangle_push, ring_push;  beyond (of its length): areas, cells², that cover no cells but are pushed, set by the
+    owner;  driven: whether there is a body
     force;  entrained (n, 2): mass and moment of inertia of the fluid that took the discs' velocity.  Discs cover cells
     with the radius ``covering_radius``.
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
@@ -154,6 +155,8 @@ class SaturatedCells:
         discs = len(self.radius)
         movers = discs + (self.polygons.count if self.polygons else 0)
         self.push, self.driven = np.zeros((count, 2)), bool(force.any())
+        self.disc_push, self.polygon_push = self.push[:discs], self.push[discs:movers]
+        self._push_of_others = self.push[movers:]
         self.beyond, self._taken, self._drive = np.zeros(count), np.zeros(count), np.tile(force, (count, 1))
         self._load, self._entrained = np.zeros((count, 3)), np.zeros((count, 2))
         self.force, self.torque, self.entrained = self._load[:discs, :2], self._load[:discs, 2], self._entrained[:discs]
@@ -215,6 +218,16 @@ class SaturatedCells:
     def ring_force(self) -> Reals:
         """Force on the rings, (m, 2); (0, 2) without any."""
         return self.bodies.load[self.bodies.rectangles :, :2] if self.bodies else np.zeros((0, 2))
+
+    @property
+    def rectangle_push(self) -> Reals:
+        """What the body force does to the rectangles, (m, 2); (0, 2) without any."""
+        return self._push_of_others[: self.bodies.rectangles if self.bodies else 0]
+
+    @property
+    def ring_push(self) -> Reals:
+        """What the body force does to the rings, (m, 2); (0, 2) without any."""
+        return self._push_of_others[self.bodies.rectangles if self.bodies else 0 :]
 
     @property
     def ring_torque(self) -> Reals:

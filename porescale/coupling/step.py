@@ -147,12 +147,11 @@ class Coupled:
 
     def _take_push(self) -> None:
         """What the body force on the fluid does to discs and polygons, N/m."""
-        wet, first = self.saturated, self._seen.stop
+        wet = self.saturated
         if wet.driven:
-            np.multiply(wet.push[:first], self._units[0], out=self.push[:first])
+            np.multiply(wet.disc_push, self._units[0], out=self.push[self._seen])
             if self.polygons:
-                own = self.polygons.push
-                np.multiply(wet.push[first : first + len(own)], self._units[0], out=own)
+                np.multiply(wet.polygon_push, self._units[0], out=self.polygons.push)
 
     def _move_bodies(self) -> None:
         """The contact steps, under the load of the fluid step."""
@@ -179,15 +178,13 @@ class Coupled:
     def rectangle_force(self) -> Reals:
         """Force of the fluid on the rectangles with the push, (m, 2) N/m, the fluid inside them given back."""
         wet = self.saturated
-        first = len(wet.push) - len(wet.ring_force) - len(wet.rectangle_force)
-        return np.asarray((wet.rectangle_force + wet.push[first:][: len(wet.rectangle_force)]) * self.scales.force)
+        return np.asarray((wet.rectangle_force + wet.rectangle_push) * self.scales.force)
 
     @property
     def ring_load(self) -> Reals:
         """Force, with the push, and torque of the fluid on the rings, (m, 3) N/m, N/m, N m/m, inside given back."""
         wet, s = self.saturated, self.scales
-        force = wet.ring_force + wet.push[len(wet.push) - len(wet.ring_force) :]
-        return np.column_stack((force * s.force, wet.ring_torque * s.torque))
+        return np.column_stack(((wet.ring_force + wet.ring_push) * s.force, wet.ring_torque * s.torque))
 
     def fields(self) -> tuple[Reals, Reals, Reals, Reals]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx).

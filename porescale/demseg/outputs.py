@@ -113,7 +113,7 @@ def _elements(shot: Snapshot, built: Built, deck: Deck) -> Iterator[tuple[Any, .
 
 
 def _contact_rows(cloud: Cloud) -> Iterator[tuple[Any, ...]]:
-    """Rows of cont.dat."""
+    """Rows of cont.dat, one a contact or bond, in the columns that the head of the file names."""
     for k in range(len(cloud.position)):
         numbers = (
             *cloud.position[k, :2],

@@ -1,6 +1,5 @@
 """Figures of docs/evidence drawn of what others keep: recorded runs of cases, OpenPIV beside ours, endurance."""
 
-import hashlib
 import json
 import math
 import re
@@ -30,12 +29,6 @@ def records(root: Path = ROOT) -> dict[str, list[tuple[str, float]]]:
     return found
 
 
-def digest(drawn: dict[str, Any]) -> str:
-    """What tells whether a figure was drawn of these numbers."""
-    text = json.dumps(drawn, default=list)
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
 def cases_picture(found: dict[str, list[tuple[str, float]]]) -> bytes:
     """A line for each case, a dot for each of its numbers, in two columns, as a PNG."""
     names = list(found)
@@ -43,8 +36,7 @@ def cases_picture(found: dict[str, list[tuple[str, float]]]) -> bytes:
     figure = files.new_figure(10.0, 1.0 + 0.2 * half)
     columns = figure.subplots(1, 2)
     for axes, mine in zip(columns, (names[:half], names[half:]), strict=True):
-        for at in range(0, half, 2):
-            axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
+        files.striped(axes, [name.replace("_", " ") for name in mine] + [""] * (half - len(mine)), 7.5)
         for at, name in enumerate(mine):
             for _, share in found[name]:
                 size = abs(share)
@@ -55,13 +47,8 @@ def cases_picture(found: dict[str, list[tuple[str, float]]]) -> bytes:
             axes.axvspan(edge, 1.35 * edge, color="#dddddd", lw=0, zorder=1)
         axes.axvline(0.0, color="#999999", lw=0.8, zorder=1)
         axes.set_xlim(-1.35, 1.35)
-        axes.set_ylim(half - 0.5, -0.5)
-        axes.set_yticks(range(len(mine)), [name.replace("_", " ") for name in mine], fontsize=7.5)
         axes.set_xlabel("(recorded - expected) / tolerance", fontsize=8.5)
-        axes.tick_params(axis="y", length=0)
-        axes.tick_params(axis="x", labelsize=8)
-        axes.spines[["top", "right", "left"]].set_visible(False)
-    return files.png(figure, 100, digest(found))
+    return files.png(figure, 100, files.digest(found))
 
 
 Pairs = list[tuple[str, list[float]]]
@@ -83,26 +70,20 @@ def peers_picture(rows: Pairs) -> bytes:
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=[1.6, 1.0])
     looks = (("o", BLUE, "porescale"), ("s", ORANGE, "OpenPIV 0.26.1"))
     for axes, columns in ((left, (0, 1)), (right, (3, 4))):
+        files.striped(axes, [name for name, _ in rows], 8)
         for at, (_, numbers) in enumerate(rows):
-            if at % 2 == 0:
-                axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
             if len(numbers) > max(columns):
                 values = [numbers[column] for column in columns]
                 axes.plot(values, [at, at], color="#999999", lw=1.0, zorder=2)
                 for value, (marker, colour, label) in zip(values, looks, strict=True):
                     axes.plot(value, at, marker, color=colour, ms=6, zorder=3, label=label if at == 0 else None)
-        axes.tick_params(labelsize=8)
-        axes.tick_params(axis="y", length=0)
-        axes.spines[["top", "right", "left"]].set_visible(False)
         axes.grid(True, axis="x", color="#d8d8d8", lw=0.6)
     left.set_xscale("log")
     left.set_xlabel("rms error of a component, px (log scale)", fontsize=8.5)
     right.set_xlim(0, None)
     right.set_xlabel("processor time of a pair, s", fontsize=8.5)
-    left.set_yticks(range(len(rows)), [name for name, _ in rows], fontsize=8)
-    left.set_ylim(len(rows) - 0.5, -0.5)
     left.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=8, frameon=False, ncols=2)
-    return files.png(figure, 100, digest(dict(rows)))
+    return files.png(figure, 100, files.digest(dict(rows)))
 
 
 Lasting = list[tuple[str, float, float]]
@@ -125,9 +106,8 @@ def endurance_picture(rows: Lasting) -> bytes:
     figure = files.new_figure(9.0, 1.0 + 0.19 * len(rows))
     axes = figure.subplots()
     least = 1e-6
+    files.striped(axes, [name for name, _, _ in rows], 7.5)
     for at, (_, off, allowed) in enumerate(rows):
-        if at % 2 == 0:
-            axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
         share = off / allowed if allowed else math.inf if off else 0.0
         marker, colour = ("<", BLUE) if share < least else ("o", BLUE) if share <= 1 else ("X", RED)
         axes.plot(min(max(share, least), 5.0), at, marker, color=colour, ms=5, zorder=3, clip_on=False)
@@ -135,14 +115,9 @@ def endurance_picture(rows: Lasting) -> bytes:
     axes.axvspan(1.0, 5.0, color="#dddddd", lw=0, zorder=1)
     axes.set_xscale("log")
     axes.set_xlim(least, 5.0)
-    axes.set_ylim(len(rows) - 0.5, -0.5)
-    axes.set_yticks(range(len(rows)), [name for name, _, _ in rows], fontsize=7.5)
     axes.set_xlabel(f"largest change / allowed (triangle: none, or less than {least:g})", fontsize=8.5)
-    axes.tick_params(axis="y", length=0)
-    axes.tick_params(axis="x", labelsize=8)
     axes.grid(True, axis="x", color="#d8d8d8", lw=0.6)
-    axes.spines[["top", "right", "left"]].set_visible(False)
-    return files.png(figure, 100, digest({"rows": rows}))
+    return files.png(figure, 100, files.digest({"rows": rows}))
 
 
 def write(folder: Path) -> None:

@@ -10,7 +10,7 @@ from PIL import Image
 
 from continuum_sph.cli import PACKAGE as CONTINUUM
 from porescale.cli.main import PACKAGE as PORESCALE
-from porescale.common.evidence import convergence_files, overhead, validation_files
+from porescale.common.evidence import convergence_files, files, overhead, validation_files
 from porescale.common.evidence.convergence import Row
 from tests.architecture.sources import ROOT
 from tests.evidence import pictures
@@ -68,24 +68,24 @@ def test_every_ladder_stands_in_the_page_of_its_topic(package: str) -> None:
 def test_every_recorded_case_stands_in_the_figure() -> None:
     found = pictures.records()
     kept = described((EVIDENCE / "cases.png").read_bytes())
-    assert kept == pictures.digest(found), AGAIN
+    assert kept == files.digest(found), AGAIN
     name = next(iter(found))
-    assert kept != pictures.digest(found | {name: [*found[name], ("one more", 0.5)]})  # the check that must fail
+    assert kept != files.digest(found | {name: [*found[name], ("one more", 0.5)]})  # the check that must fail
 
 
 def test_the_figure_beside_openpiv_is_of_the_table_of_its_case() -> None:
     rows = pictures.pairs(pictures.PAIRS.read_text(encoding="utf-8"))
     assert len(rows) > 10
     assert all(len(numbers) in (2, 5) for _, numbers in rows)
-    assert described((EVIDENCE / "peers.png").read_bytes()) == pictures.digest(dict(rows)), AGAIN
+    assert described((EVIDENCE / "peers.png").read_bytes()) == files.digest(dict(rows)), AGAIN
 
 
 def test_the_figure_of_endurance_is_of_both_studies() -> None:
     rows = pictures.lasting()
     assert len({name for name, _, _ in rows}) == len(rows) > 30
     kept = described((EVIDENCE / "endurance.png").read_bytes())
-    assert kept == pictures.digest({"rows": rows}), AGAIN
-    assert kept != pictures.digest({"rows": rows[1:]})  # the check that must fail
+    assert kept == files.digest({"rows": rows}), AGAIN
+    assert kept != files.digest({"rows": rows[1:]})  # the check that must fail
 
 
 @pytest.mark.parametrize("folder", ["parts", "parts_continuum"])

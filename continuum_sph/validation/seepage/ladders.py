@@ -1,6 +1,7 @@
 """Convergence of water in soil: consolidation, sheet pile, imbibition at several spacings."""
 
 from dataclasses import replace
+from functools import partial
 
 from continuum_sph.validation.seepage.consolidation import LAYER, consolidation
 from continuum_sph.validation.seepage.infiltration import DRAWN, fronts
@@ -21,33 +22,24 @@ LADDERS = Ladders()
     " compressible as soil leaves 0.0037 at any spacing",
 )
 def layer(rows: float) -> float:
-    """Exact: Terzaghi 1923."""
+    """Against the series of Terzaghi 1923."""
     return consolidation(replace(LAYER, rows=int(rows)), (0.1,))[1]
 
 
-@LADDERS.ladder(
-    "seepage.flow_under_a_sheet_pile",
-    title="Relative error of the discharge under a pile to half of the depth",
-    along="particles over the depth",
-    levels=(12, 16, 24, 32),
-    because="no order is expected: the tip lies between wall and open particles, uncertain to half a spacing, of either"
-    " sign",
-)
-def discharge(rows: float) -> float:
-    """Exact: conformal mapping (Harr 1962)."""
-    return abs(one_side(0.5, int(rows))[0] - 1.0)
+def pile_error(which: int, rows: float) -> float:
+    """|discharge, or exit gradient, over that of the conformal map, less 1| (Harr 1962);  which : 0 or 1."""
+    return abs(one_side(0.5, int(rows))[which] - 1.0)
 
 
-@LADDERS.ladder(
-    "seepage.exit_gradient_at_a_sheet_pile",
-    title="Relative error of the exit gradient there",
-    along="particles over the depth",
-    levels=(12, 16, 24, 32),
-    because="as for the discharge; d ln i_E/ds is larger",
-)
-def exit_gradient(rows: float) -> float:
-    """Exact: conformal mapping (Harr 1962)."""
-    return abs(one_side(0.5, int(rows))[1] - 1.0)
+TIP = "no order is expected: the tip lies between wall and open particles, uncertain to half a spacing, of either sign"
+for which, (name, title, because) in enumerate((
+    ("seepage.flow_under_a_sheet_pile", "Relative error of the discharge under a pile to half of the depth", TIP),
+    ("seepage.exit_gradient_at_a_sheet_pile", "Relative error of the exit gradient there",
+     "as for the discharge; d ln i_E/ds is larger"),
+)):  # fmt: skip
+    LADDERS.ladder(name, title=title, along="particles over the depth", levels=(12, 16, 24, 32), because=because)(
+        partial(pile_error, which)
+    )
 
 
 @LADDERS.ladder(

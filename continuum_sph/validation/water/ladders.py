@@ -42,7 +42,7 @@ def _channel(kind: str) -> None:
         " order at least",
     )
     def error(across: float) -> float:
-        """Corrected gradients."""
+        """Error of the channel with corrected gradients."""
         return channel_error(kind, int(across))
 
 
@@ -72,5 +72,5 @@ def pressure(rows: float) -> float:
     " error tends to that",
 )
 def sound(across: float) -> float:
-    """Plain gradients."""
+    """Period over that of the continuous wave, less 1, without corrected gradients."""
     return abs(sound_period(int(across))[0] / 0.1 - 1.0)

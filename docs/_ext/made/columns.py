@@ -12,9 +12,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from docs._ext.docstring import ROOT
 from docs._ext.made.text import code, escaped, slug, table
 
-ROOT = Path(__file__).resolve().parents[3]
 LINE = re.compile(r"^(?P<name>\S.*?) \((?P<unit>[^()]*)\) : (?P<about>.+)$", re.MULTILINE)
 COLUMN = re.compile(r"^.* \([^()]*\)$")
 _P, _C = "porescale/builders", "continuum_sph/builders"

@@ -5,11 +5,10 @@ Topics are the sections of docs/cases.md, texts its lines; the rest comes from t
 
 import re
 import tomllib
-from pathlib import Path
 
+from docs._ext.docstring import ROOT
 from docs._ext.made.text import code, escaped, table
 
-ROOT = Path(__file__).resolve().parents[3]
 COMMAND = re.compile(r"^    ((?:porescale|continuum-sph|python) .*)$", re.MULTILINE)
 LINK = re.compile(r"\[(\w+)\]\(\.\./cases/\w+\)")
 PICTURE = re.compile(r"!\[([^\]]*)\]\(picture\.png\)")
@@ -42,7 +41,7 @@ def numbers(case: str) -> str:
 
 
 def entry(case: str, text: str) -> str:
-    """One case."""
+    """A case as Markdown: title, picture, command, numbers, link.  text : what the list of cases says of it."""
     readme = (ROOT / "cases" / case / "README.md").read_text(encoding="utf-8")
     title = readme.split("\n", 1)[0].removeprefix("# ").strip()
     made = [f"## {title}\n", f"{text[0].upper()}{text[1:]}.\n"]

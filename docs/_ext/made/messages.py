@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from docs._ext.docstring import ROOT
 from docs._ext.made.text import escaped, slug, table
 
-ROOT = Path(__file__).resolve().parents[3]
 LEFT_OUT = "…"
 """What stands in a message for what a run puts there."""
 MOST = 4
@@ -121,7 +121,7 @@ class Reader:
 
     @cached_property
     def tree(self) -> ast.Module:
-        """Its syntax."""
+        """The syntax tree of its text."""
         return ast.parse(self.path.read_text(encoding="utf-8"))
 
     def messages(self) -> Iterator[Message]:

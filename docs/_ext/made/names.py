@@ -8,12 +8,11 @@ import re
 import textwrap
 from collections.abc import Iterator
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
+from docs._ext.docstring import ROOT
 from docs._ext.made.text import code, escaped, prose, slug, table
 
-ROOT = Path(__file__).resolve().parents[3]
 NAMES = r"\*{0,2}[A-Za-z_]\w*(?:(?:, | and )\*{0,2}[A-Za-z_]\w*)*(?: \([^)]*\))?"
 ENTRY = re.compile(rf"(?:^|(?<=[;.:])\s+|\n)({NAMES}) : ")
 """A parameter of a docstring: its name, or several, before a colon between spaces."""
@@ -93,7 +92,7 @@ def members(cls: type) -> Iterator[tuple[str, Any]]:
 
 
 def one(module: str, name: str) -> str:
-    """One public name."""
+    """A public name of a module as Markdown: signature, docstring, and those of its members."""
     thing = getattr(import_module(module), name)
     doc = inspect.cleandoc(thing.__doc__ or "")
     ours = str(getattr(thing, "__module__", "")).startswith(("porescale", "continuum_sph"))

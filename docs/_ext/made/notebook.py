@@ -2,10 +2,10 @@
 
 import json
 import re
-from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[3]
+from docs._ext.docstring import ROOT
+
 WIDEST = 4000
 """Characters of printed output that are shown."""
 

@@ -5,13 +5,12 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from functools import cache
-from pathlib import Path
 from typing import Any
 
+from docs._ext.docstring import ROOT
 from docs._ext.made.text import code, escaped, slug, table
 from porescale.common.schema.json_schema import scene_schema
 
-ROOT = Path(__file__).resolve().parents[3]
 _ONE = r"[kMmuµn]?(m|g|s|N|Pa|J|W|K|rad|Hz)(\^-?\d|[²³])?"
 UNIT = re.compile(rf"^(-|%|°|deg|px|{_ONE}([ /*]\(?{_ONE}\)?)*|1/{_ONE})$")
 """What stands last in the description of a key where it is a unit."""

@@ -149,7 +149,7 @@ def _convergence(package: Package) -> Callable[..., int]:
         order does not hold, or if a ladder ended with an exception.
         """
         from porescale.common.evidence import convergence_files as study
-        from porescale.common.record.card import short_commit
+        from porescale.common.record.card import mark
 
         assert package.convergence is not None
         register = package.convergence()
@@ -161,10 +161,10 @@ def _convergence(package: Package) -> Callable[..., int]:
         use_threads(threads)
         kept, made = study.stored(folder), []
         about = circumstances(package, _command_line(package, "convergence", ()), threads or 1)
-        mark = {"date": about["date"], "commit": short_commit()}
+        run = mark()
         for it in ladders:
             made.append(it.run())
-            kept[it.name] = made[-1].as_dict() | mark
+            kept[it.name] = made[-1].as_dict() | run
             say(f"{it.name}: order {study.number(made[-1].measured)} ({made[-1].seconds:.1f} s)")
             study.write(folder, about, [kept[it.name] for it in register if it.name in kept])
         if json:

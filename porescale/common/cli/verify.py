@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -66,10 +65,9 @@ def command(package: Package) -> Callable[..., int]:
 def _keep(folder: Path, register: Sequence[Validation], rows: Sequence[Row]) -> None:
     """Put rows into the files in ``folder`` beside those that other runs left, in the order of the register."""
     from porescale.common.evidence import validation_files as files
-    from porescale.common.record.card import short_commit
+    from porescale.common.record.card import mark
 
     known = files.stored(folder / f"{files.NAME}.json")
-    mark = {"date": datetime.now(UTC).date().isoformat(), "commit": short_commit()}
-    topics = {item.name: {"topic": item.topic} for item in register}
-    known |= {row.name: row.as_dict() | topics[row.name] | mark for row in rows}
+    topics, made = {item.name: {"topic": item.topic} for item in register}, mark()
+    known |= {row.name: row.as_dict() | topics[row.name] | made for row in rows}
     files.write(folder, [known[name] for name in topics if name in known])

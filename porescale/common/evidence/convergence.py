@@ -22,8 +22,8 @@ class Row:
 
     errors : one for each of ``levels``;  measured : order, see `order_of`, None where it cannot be computed;  expected,
     within, because : as of the `Ladder`;  holds : whether the measured order is at least the expected one less
-    ``within``, None where no order is expected; False of a
-    ladder that ended with an exception, whose text is ``because``.
+    ``within``, None where no order is expected; False of a ladder that ended with an exception, whose text is
+    ``because``.
     """
 
     name: str

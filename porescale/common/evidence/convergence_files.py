@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -97,12 +96,11 @@ def picture(rows: Sequence[Row]) -> bytes:
 def digest(rows: Sequence[Row]) -> str:
     """What tells whether a picture was drawn of these rows: a hash of what it shows of them."""
     keys = ("name", "along", "levels", "errors", "measured", "expected", "holds")
-    text = json.dumps([[row.as_dict()[key] for key in keys] for row in rows])
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+    return files.digest([[row.as_dict()[key] for key in keys] for row in rows])
 
 
 def panel(axes: Axes, row: Row) -> None:
-    """Draw one row."""
+    """Draw a row: its errors over its levels, and the slope of the order that is expected."""
     from matplotlib.ticker import NullFormatter, NullLocator
 
     good = [(x, y) for x, y in zip(row.levels, row.errors, strict=True) if math.isfinite(y) and y > 0]

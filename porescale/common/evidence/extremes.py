@@ -87,9 +87,8 @@ def markdown(command: str, rows: Sequence[Row]) -> str:
     """The table of all tries, one a row."""
     said = f"Written by `{command}`.  *Stable*: it came to its end in sense;  *right*: and a known number holds."
     cells = [(row.axis, row.value, f"**{row.end}**", row.said) for row in rows]
-    return (
-        "\n".join(["# Extremes", "", said, "", *files.markdown_table(("what", "how far", "end", "said"), cells)]) + "\n"
-    )
+    table = files.markdown_table(("what", "how far", "end", "said"), cells)
+    return "\n".join(["# Extremes", "", said, "", *table]) + "\n"
 
 
 def picture(rows: Sequence[Row]) -> bytes:

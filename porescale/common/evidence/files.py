@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 import json
 import math
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from porescale.common.core.atomic import write_bytes
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -77,8 +79,25 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
+def striped(axes: Axes, names: Sequence[str], fontsize: float) -> None:
+    """Make axes of which each line is something that has a name, the first at the top, every other one on grey."""
+    for at in range(0, len(names), 2):
+        axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
+    axes.set_yticks(range(len(names)), names, fontsize=fontsize)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.tick_params(axis="y", length=0)
+    axes.tick_params(axis="x", labelsize=8)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+
+
+def digest(shown: Any) -> str:
+    """What tells whether a figure was drawn of these numbers, names and lists: a hash, 16 hexadecimal digits."""
+    return hashlib.sha256(json.dumps(shown).encode()).hexdigest()[:16]
+
+
 def png(figure: Figure, dpi: int, drawn_of: str = "") -> bytes:
-    """The figure as a PNG file that does not name the version of the library.  drawn_of : kept as its description."""
+    """The figure as a PNG file that does not name the version of the library.  drawn_of : its `digest`, kept as its
+    description."""
     out = io.BytesIO()
     named = {"Description": drawn_of} if drawn_of else {}
     figure.savefig(out, format="png", dpi=dpi, metadata={"Software": None} | named)

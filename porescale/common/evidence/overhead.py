@@ -5,8 +5,6 @@ held against in turns, so that a busy machine slows both alike, and writes a tab
 which stand still while others have the core.
 """
 
-import hashlib
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -141,21 +139,14 @@ def picture(rows: Sequence[Row]) -> bytes:
             ratios, places = zip(*mine, strict=True)
             axes.hlines(places, 1.0, ratios, color=colour, lw=1.5)
             axes.plot(ratios, places, marker, color=colour, ms=5, label=label)
-    for at in range(0, len(rows), 2):
-        axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
+    names = [row.name if row.beside == SMALLEST else f"{row.name} (beside {row.beside})" for row in rows]
+    files.striped(axes, names, 8)
     axes.axvline(1.0, color="black", lw=1.0)
     axes.axvline(DEARER, color="black", lw=0.8, ls=":")
-    names = [row.name if row.beside == SMALLEST else f"{row.name} (beside {row.beside})" for row in rows]
-    axes.set_yticks(range(len(rows)), names, fontsize=8)
-    axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_xlabel(f"time over that of what it is held against (dotted: {DEARER:g})", fontsize=8.5)
-    axes.tick_params(axis="x", labelsize=8)
-    axes.tick_params(axis="y", length=0)
     axes.grid(True, axis="x", color="#d8d8d8", lw=0.6)
-    axes.spines[["top", "right", "left"]].set_visible(False)
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=8, frameon=False, ncols=2)
-    text = json.dumps([[row.name, row.beside, row.ratio] for row in rows])
-    return files.png(figure, 100, hashlib.sha256(text.encode()).hexdigest()[:16])
+    return files.png(figure, 100, files.digest([[row.name, row.beside, row.ratio] for row in rows]))
 
 
 def markdown(about: Mapping[str, Any], rows: Sequence[Row]) -> str:

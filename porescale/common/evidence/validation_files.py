@@ -7,7 +7,6 @@ A stored row is a `Row` as JSON keeps it with its ``topic``, and ``date`` and ``
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -100,8 +99,7 @@ def doubtful(rows: Sequence[Stored], beyond: float = 0.02) -> list[str]:
 def digest(rows: Sequence[Stored]) -> str:
     """What tells whether a figure was drawn of these rows: a hash of their names, numbers and tolerances."""
     keys = ("name", "reference", "measured", "error", "tolerance", "passed")
-    text = json.dumps([[row[key] for key in keys] for row in rows])
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+    return files.digest([[row[key] for key in keys] for row in rows])
 
 
 def departures(row: Stored) -> tuple[Floats, Floats | None]:
@@ -130,18 +128,11 @@ def picture(rows: Sequence[Stored]) -> bytes:
     """Two panels as a PNG, a line for each row: error over tolerance; measured over reference with the tolerance."""
     figure = files.new_figure(10.0, 1.5 + 0.185 * len(rows))
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=[1.0, 1.0])
-    for at in range(0, len(rows), 2):
-        for axes in (left, right):
-            axes.axhspan(at - 0.5, at + 0.5, color="#f4f4f4", lw=0, zorder=0)
+    names = [str(row["name"]).partition(".")[2].replace("_", " ") for row in rows]
+    for axes in (left, right):
+        files.striped(axes, names, 7.5)
     _shares(left, rows)
     _ratios(right, rows)
-    names = [str(row["name"]).partition(".")[2].replace("_", " ") for row in rows]
-    left.set_yticks(range(len(rows)), names, fontsize=7.5)
-    left.set_ylim(len(rows) - 0.5, -0.5)
-    for axes in (left, right):
-        axes.tick_params(axis="y", length=0)
-        axes.tick_params(axis="x", labelsize=8)
-        axes.spines[["top", "right", "left"]].set_visible(False)
     return files.png(figure, 100, digest(rows))
 
 

@@ -101,10 +101,11 @@ def commit() -> dict[str, Any] | None:
     return {"hash": revision, "changed": changed}
 
 
-def short_commit() -> str:
-    """Eight digits of the commit, with a + where files have changed since; "" outside of a checkout."""
+def mark() -> dict[str, str]:
+    """{"date", "commit"} of what is measured now, UTC: eight digits of the commit, with a + where files have changed
+    since; "" outside of a checkout."""
     known = commit()
-    return known["hash"][:8] + "+" * known["changed"] if known else ""
+    return {"date": now()[:10], "commit": known["hash"][:8] + "+" * known["changed"] if known else ""}
 
 
 def _git(root: Path, *words: str) -> str:

@@ -65,7 +65,7 @@ SQUARE_LEVELS, RING_LEVELS = (18, 25, 35), (10, 14, 20, 28)
     " next order counts",
 )
 def loose_array(diameter: float) -> float:
-    """Solid fraction 0.2."""
+    """Gaps of 0.98 diameters between the discs, at solid fraction 0.2."""
     return drag_error(diameter, LOOSE, 8)
 
 
@@ -122,6 +122,6 @@ def squares(cells: float) -> float:
     because="exact solution of Taylor-Couette flow; curvature of size 1/R² as for the drag; one place of the centre",
 )
 def taylor_couette(diameter: float) -> float:
-    """tau 0.8."""
+    """Torque over that of Taylor & Couette, less 1, at the relaxation time 0.8."""
     inner = diameter / 2
     return abs(abs(couette_torque(inner, 2 * inner, TAU)[0]) - 1)

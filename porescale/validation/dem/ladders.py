@@ -1,5 +1,6 @@
 """Convergence of the discs with the step: impacts, their energy, a pendulum.  Levels are steps."""
 
+from dataclasses import replace
 from functools import partial
 
 from porescale.common.evidence.convergence import Ladders
@@ -44,8 +45,6 @@ def linear_impact(steps: float) -> float:
 )
 def hertz_impact(steps: float) -> float:
     """Damping ratio 0.2155, 1 m/s."""
-    from dataclasses import replace
-
     law = replace(HERTZ, damping_ratio=RATIO)
     return abs(float(hertz_bounce(law, 1.0, steps).mean()) - law.restitution())
 

@@ -1,0 +1,28 @@
+"""Whether what is placed by hand stands in a grain of the packing, which is known once the packing is made."""
+
+import numpy as np
+
+from porescale.builders.derive import Derived
+from porescale.builders.initial.grains import frames_of, grains_of
+from porescale.builders.initial.placed import placed
+from porescale.scene.scene import Scene
+
+
+def require_clear_packing(scene: Scene, derived: Derived) -> None:
+    """InputError, as of the run, where something placed by hand stands in a grain of the packing.
+
+    The packing is made only where something stands in the rectangle that it fills.  What was settled or compressed is
+    kept, and found again by the run.
+    """
+    packing = scene.grains.packing if scene.grains else None
+    if packing is None or scene.rock:
+        return
+    _, x, r = placed(scene)
+    frames = frames_of(scene, derived)
+    low = [*(x - r[:, None]), *(np.min(it.frame.corners, axis=0) for it in frames)]
+    high = [*(x + r[:, None]), *(np.max(it.frame.corners, axis=0) for it in frames)]
+    corner, size = np.array((packing.left, packing.bottom)), np.array((packing.width, packing.height))
+    beside = packing.diameter  # settled ones are higher here than there
+    if any(np.all(one < corner + size + beside) and np.all(other > corner - beside)
+           for one, other in zip(low, high, strict=True)):  # fmt: skip
+        grains_of(scene, derived, frames)
