@@ -128,6 +128,11 @@ class Worst(NamedTuple):
     share: float
     field: Field
 
+    @property
+    def rank(self) -> tuple[bool, float]:
+        """What orders pairs: those that show nothing come last."""
+        return not self.field.correlation.any(), self.share
+
 
 def write_fields(
     measurement: Measurement,
@@ -151,15 +156,18 @@ def write_fields(
     files: list[Path] = []
     last, film, alone = None, measurement.shots.film, measurement.total == 1
     worst: Worst | None = None
+    seen = 0, 0
     if folder is not None:
         snapshots.clear(folder)
     for number, field in enumerate(fields):
         if alone and field.valid.sum() < CHANCE * (~field.solid).sum():
             raise strangers(measurement, Worst(number, 0.0, field))
         last = field
-        share = float(field.valid.sum() / max(1, (~field.solid).sum()))
-        if worst is None or share < worst.share:
-            worst = Worst(number, share, field)
+        valid, fluid = int(field.valid.sum()), int((~field.solid).sum())
+        this = Worst(number, valid / max(1, fluid), field)
+        worst = this if worst is None or this.rank < worst.rank else worst
+        if field.correlation.any():
+            seen = seen[0] + valid, seen[1] + fluid
         counts["pairs"] += 1
         counts["vectors"] += field.u.size
         for name in ("valid", "replaced", "solid"):
@@ -186,7 +194,7 @@ def write_fields(
         files.append(vorticity(last, folder / "vorticity.png"))
     if overlay and folder is not None and not measurement.average:
         files.append(overlay_film(folder, film, measurement.extent(next(iter(film)).shape)))
-    found = doubts(measurement, counts, worst)
+    found = doubts(measurement, seen, worst)
     if review and folder is not None and worst is not None:
         files.append(write_review(measurement, worst, found, folder / REVIEW))
     return {**counts, "files": [str(path) for path in files], "doubts": found}
@@ -226,10 +234,13 @@ def strangers(measurement: Measurement, worst: Worst) -> InputError:
     return InputError(Fault("pictures", None, words, repair="; ".join(found)))
 
 
-def doubts(measurement: Measurement, counts: dict[str, int], worst: Worst | None) -> list[str]:
-    """That too few vectors are valid, and what the pair with the fewest says to try; nothing where enough are."""
-    share = counts["valid"] / max(1, counts["vectors"] - counts["solid"])
-    if worst is None or share >= FEW_VALID:
+def doubts(measurement: Measurement, seen: tuple[int, int], worst: Worst | None) -> list[str]:
+    """That too few vectors are valid, and what the pair with the fewest says to try; nothing where enough are.
+
+    seen : numbers of valid vectors and of all, in pairs that show anything: the others have been said already.
+    """
+    share = seen[0] / max(1, seen[1])
+    if worst is None or not seen[1] or share >= FEW_VALID:
         return []
     pair = "" if measurement.total == 1 else f", of pair {worst.number} {100 * worst.share:.0f} %"
     found = advice(measurement.pair(worst.number, worst.field), measurement.settings)

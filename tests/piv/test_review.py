@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import InputError, PorescaleWarning
-from porescale.common.page.page import joined
+from porescale.common.page.scripts import joined
 from porescale.piv import Field, measure
 from porescale.piv.fields.field import in_metres, on_picture
 from porescale.piv.images import flows

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_text
 from porescale.common.core.types import AnyArray
-from porescale.common.page.page import joined, static
+from porescale.common.page.scripts import joined, static
 from porescale.piv.estimate.advice import Pair
 from porescale.piv.estimate.rejected import picked
 
