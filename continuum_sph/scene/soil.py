@@ -142,9 +142,7 @@ class SoilSection(Section):
         names = [it.name or f"part {number}" for number, it in enumerate(self.watch)]
         for number, name in enumerate(names):
             if name in names[:number]:
-                found.append(
-                    Fault(f"soil.watch[{number}].name", name, "is that of another part", repair="rename it")
-                )
+                found.append(Fault(f"soil.watch[{number}].name", name, "is that of another part", repair="rename it"))
         if self.dilatancy_angle > self.friction_angle:
             found.append(
                 Fault("soil.dilatancy_angle", self.dilatancy_angle, "makes soil that gives energy as it shears",

@@ -4,6 +4,7 @@ import numpy as np
 
 from continuum_sph.builders.parts.soil import soil_particles, soil_section
 from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage import PoreFlow
 from continuum_sph.seepage.skeleton import Frame
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Cloud
@@ -20,9 +21,10 @@ class HeldSoilPart(Part):
     """Soil that is held: it has no stress, no displacement and no columns."""
 
     key = "soil"
+    pressure = "pore_pressure"  # what stands for it in a snapshot of both layers
 
-    def __init__(self, scene: Scene, ground: Frame) -> None:
-        self.section, self.skeleton = soil_section(scene), ground.skeleton
+    def __init__(self, scene: Scene, flow: PoreFlow) -> None:
+        self.section, self.flow, self.skeleton = soil_section(scene), flow, flow.skeleton
         self.mass = self.section.density * scene.numerics.spacing**2  # kg/m, of a particle
 
     def motion(self) -> tuple[Floats, Floats]:
@@ -34,11 +36,11 @@ class HeldSoilPart(Part):
         return np.full(self.skeleton.count, self.mass)
 
     def cloud(self) -> Cloud:
-        """The soil: velocity, porosity; its stress is not known."""
+        """The soil: velocity, porosity, and the pressure of the water about it; its stress is not known."""
         n = self.skeleton.count
         data = {
             "velocity": np.zeros((n, 3)),
-            "mean_stress": np.full(n, np.nan),
+            "pore_pressure": self.flow.pore_pressure(),
             "porosity": np.full(n, self.section.porosity),
         }
-        return Cloud(self.skeleton.x.copy(), data, {"velocity": "m/s", "mean_stress": "Pa"})
+        return Cloud(self.skeleton.x.copy(), data, {"velocity": "m/s", "pore_pressure": "Pa"})

@@ -44,6 +44,7 @@ class WetSoilPart(SoilPart):
     """The soil, as of a tank without water, whose columns begin with "soil: "; `MixturePart` shows it."""
 
     key = "soil"
+    pressure = "mean_stress"  # what stands for it in a snapshot of both layers
 
     def row(self) -> dict[str, float]:
         """The columns of soil alone, with the prefix "soil: "."""
@@ -113,7 +114,7 @@ class MixturePart(Part):
         parts = (
             ("layer", np.full(len(water.position), WATER), np.full(len(air.position), AIR), kind),
             *((key, water.data[key], air.data[key], soil.data[key]) for key in ("velocity", "porosity")),
-            ("pressure", water.data["pressure"], air.data["pressure"], soil.data["mean_stress"]),
+            ("pressure", water.data["pressure"], air.data["pressure"], soil.data[self.soil.pressure]),
         )
         data = {name: np.concatenate(values) for name, *values in parts}
         units = {"velocity": "m/s", "pressure": "Pa"}
@@ -126,7 +127,7 @@ class MixturePart(Part):
 
     def show(self, snapshot: Snapshot) -> None:
         """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
-        pressure (of soil mean effective stress), porosity."""
+        pressure (of soil mean effective stress, of soil that is held that of its water), porosity."""
         snapshot.clouds |= self._clouds()
 
     def state(self) -> dict[str, Any]:
@@ -193,7 +194,7 @@ def assemble(scene: Scene) -> Assembly:
     """Soil with water in its pores, and all that a scene has besides."""
     both = seepage_flow(scene)
     water = PoreWaterPart(scene, both.water)
-    soil = HeldSoilPart(scene, both.ground) if isinstance(both.ground, Frame) else wet_soil(scene, both.ground)
+    soil = HeldSoilPart(scene, both.water) if isinstance(both.ground, Frame) else wet_soil(scene, both.ground)
     water.jumps.strips = [(it.left, it.right) for it in scene.reservoir]
     mixture = MixturePart(both, water, soil, air=scene.air is not None)
     parts: list[Part] = [water, soil, mixture]

@@ -68,7 +68,9 @@ def submerge(scene: Scene, ground: SoilFlow) -> None:
     above = np.column_stack((x[:, 0], np.minimum(top, scene.inner[1])))
     wet = wet_height(scene, x) - wet_height(scene, above)
     table = wet_top(scene, x)
-    grains = wet if table is None else np.maximum(wet, table - x[:, 1])  # of the soil above a particle, what is wet
+    grains = wet if table is None else table - x[:, 1]  # of the soil above a particle, what is wet
+    if section.water_table is not None:
+        grains = np.maximum(wet, grains)
     lost = (1.0 - section.porosity) * scene.water.density * scene.gravity * np.maximum(grains, 0.0)
     upright = np.maximum(soil.stress[:n, 1], 1e-300)
     soil.stress[:n] *= (1.0 - np.minimum(1.0, lost / upright))[:, None]
