@@ -25,7 +25,7 @@ def pick(
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.front import begun, choose, read_front
 
-    allowed = None if error is None else _share(error)
+    allowed = None if error is None else share("--error", error)
     seconds = None if budget is None else _seconds(budget)
     front = read_front(find(scene))
 
@@ -49,15 +49,15 @@ def pick(
     return choice
 
 
-def _share(text: str) -> float:
-    """ "5%", "5 %" or "0.05" as a share."""
+def share(option: str, text: str) -> float:
+    """ "5%", "5 %" or "0.05" of an option as a share."""
     number, sign, rest = text.partition("%")
     try:
         found = float(number) / (100 if sign else 1)
     except ValueError:
         found = math.nan
     if rest.strip() or not 0 < found < math.inf:
-        raise InputError(Fault("--error", text, "is not a positive share", "", "> 0", "write it as 5% or 0.05"))
+        raise InputError(Fault(option, text, "is not a positive share", "", "> 0", "write it as 5% or 0.05"))
     return found
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.common.cli.pick import _seconds, _share, pick
+from porescale.common.cli.pick import _seconds, pick, share
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from porescale.common.studies import trade_files
@@ -265,13 +265,13 @@ def test_a_pace_is_that_of_steps_without_the_first_ones():
 
 
 def test_shares_and_times_are_read_as_people_write_them():
-    assert _share("5%") == _share("5 %") == _share("0.05") == 0.05
+    assert share("--error", "5%") == share("--error", "5 %") == share("--error", "0.05") == 0.05
     assert _seconds("3min") == 180.0
     assert _seconds("90") == 90.0
     assert _seconds("2 h") == 7200.0
     for wrong in ("", "5%%", "-1%", "nan", "inf", "0"):
         with pytest.raises(InputError):
-            _share(wrong)
+            share("--error", wrong)
     for wrong in ("", "3 apples", "-1 s", "0", "3 m"):
         with pytest.raises(InputError):
             _seconds(wrong)
