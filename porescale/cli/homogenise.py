@@ -77,7 +77,8 @@ def homogenise(
     campaign = Campaign("porescale", file, folder / "specimens", threads=threads or 1, again=again)
     slots = enlist(campaign, jobs, scheduler)
     use_threads(threads)
-    first, count, ends = test["grains"]["packing"]["seed"], request.packings, []
+    first, count = test["grains"]["packing"]["seed"], request.packings
+    ends: list[Ended] = []
     while True:
         ends += _specimens(campaign, range(first + len(ends), first + count), slots)
         if code := conclude(ends):
