@@ -11,7 +11,8 @@ USUAL = 4
 DRIFT = math.radians(0.5)
 """Dilatancy angle below which volume counts as constant: half a per cent of volume over half of the strain."""
 ORDERED = math.radians(1.5)
-"""By how much the critical angles of discs with friction coefficients of 0.25 and of 1 differ, about: MEASURED."""
+"""Half of the interval of a critical angle from where on friction coefficients may come in any order: angles of discs
+hardly grow with friction above 0.3, and a tenth of 15 degrees is as much as a doubling changes there."""
 INDEPENDENT = 5.0
 """Independent values in the critical state below which a test is too short for a mean of its own."""
 HALF = 0.5
@@ -57,9 +58,8 @@ def _critical(found: Mapping[str, Known]) -> list[str]:
     if alone.mean < INDEPENDENT:
         made.append(f"a critical state has {alone.mean:.2g} independent values in a test: raise homogenise.strain")
     if not angle.interval < ORDERED:
-        half = math.degrees(ORDERED)
         made.append(
-            f"critical friction angle {angle.text()}: too wide to order friction coefficients of 0.25 and more, which "
-            f"differ by {half:.2g} degrees; `--until friction=5%` goes on"
+            f"critical friction angle {angle.text()}: too wide to order friction coefficients above 0.3, known to "
+            f"{math.degrees(ORDERED):.2g} degrees it would; `--until friction=5%` goes on"
         )
     return made

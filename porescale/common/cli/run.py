@@ -38,7 +38,9 @@ def command(package: Package) -> Callable[..., int]:
         error: Annotated[
             str | None, Parameter(help="5%: the cheapest point of the scene's front that is as good")
         ] = None,
-        budget: Annotated[str | None, Parameter(help="3min: the best point of its front that takes no longer")] = None,
+        budget: Annotated[
+            str | None, Parameter(help="3min: the best point of its front whose command takes no longer")
+        ] = None,
         quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
     ) -> int:
         """Run a scene and write its run folder."""
