@@ -34,6 +34,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    from porescale.common.compiled.jit import when_compiling  # and with it numpy, once the variables above are set
+
+    # In systems of a few cells waiting for a second thread is all that is done, and the other worker needs the core.
+    when_compiling(lambda machine: machine.numba.set_num_threads(1))
     if config.option.compile_times:
         plugin = CompileTimes()
         config.pluginmanager.register(plugin)
@@ -70,32 +74,19 @@ def process_state() -> dict[str, Any]:
 
 @pytest.fixture(autouse=True)
 def the_next_test_finds_the_process_as_it_was() -> Iterator[None]:
-    """Threads of the kernels as before each test, and an error where a test leaves anything else changed.
+    """One thread for the kernels again, and an error where a test leaves anything else changed.
 
     Libraries may set variables of the environment when they are imported.
     """
     before = process_state()
-    threads = sys.modules["numba"].get_num_threads() if "numba" in sys.modules else None
     yield
     if "numba" in sys.modules:
-        numba = sys.modules["numba"]
-        numba.set_num_threads(threads or numba.config.NUMBA_NUM_THREADS)
+        sys.modules["numba"].set_num_threads(1)
     after = process_state()
     after["environment"] = {key: after["environment"].get(key) for key in before["environment"]}
     tracemalloc.stop()
     os.chdir(before["folder"])
     assert after == before
-
-
-@pytest.fixture
-def one_thread() -> Iterator[None]:
-    """Kernels on one thread: in scenes of a few cells waiting for a second one is all that is done."""
-    from porescale.common.compiled.jit import set_threads, threads
-
-    before = threads()
-    set_threads(1)
-    yield
-    set_threads(before)
 
 
 @pytest.fixture
