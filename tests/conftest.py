@@ -28,7 +28,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--share", default="0/1", help="run every n-th of the chosen tests, from the k-th: k/n")
+    parser.addoption("--share", help="of the slow tests run every n-th, from the k-th, beside the others: k/n")
     parser.addoption("--shuffle", type=int, help="run files, and the tests of each, in an order by this seed")
     parser.addoption("--compile-times", action="store_true", help="say which kernels took how long to compile")
 
@@ -46,14 +46,12 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if not config.option.markexpr:
-        deselected = [item for item in items if item.get_closest_marker("slow")]
-        items[:] = [item for item in items if not item.get_closest_marker("slow")]
-        config.hook.pytest_deselected(items=deselected)
-    part, parts = map(int, config.getoption("--share").split("/"))
-    if parts > 1:
-        config.hook.pytest_deselected(items=[item for k, item in enumerate(items) if k % parts != part])
-        items[:] = items[part::parts]
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    part, parts = map(int, (config.option.share or "0/1").split("/"))
+    kept = slow[part::parts] if config.option.share or config.option.markexpr else []
+    left = set(slow) - set(kept)
+    items[:] = [item for item in items if item not in left]
+    config.hook.pytest_deselected(items=list(left))
     if config.option.shuffle is not None:
         dice = random.Random(config.option.shuffle)
         files = {path: dice.random() for path in sorted({item.path for item in items})}
