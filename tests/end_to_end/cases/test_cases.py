@@ -33,6 +33,7 @@ FLOWS = {
     "permeameter": ({"permeability", "flux at the outlet"}, "grains.hydraulic_radius_ratio=0.6",
                     {"permeability", "flux at the outlet"}),
     "settling_square": ({"speed"}, "grains.density=1350", {"speed"}),
+    "taylor_couette": (set(), "ring.diameter=0.041", {"torque on the cylinder", "torque on the ring"}),
     "towed_cylinder": (set(), "fluid.viscosity=1.1e-3", {"drag"}),
     "vortex_street": ({"lift coefficient"}, "fluid.viscosity=2e-3", {"lift coefficient", "period of the lift"}),
 }  # fmt: skip
@@ -99,7 +100,7 @@ def test_every_expectation_is_complete_and_reasoned(case):
         assert row["tolerance"] >= 0
         assert len(row["because"].split()) > 2
         assert row["column"].endswith(f"({row['unit']})") or (
-            {"first_below", "last_above", "period_from"} & set(row["at"]) and row["unit"] == "s"
+            {"first_below", "first_above", "last_above", "period_from"} & set(row["at"]) and row["unit"] == "s"
         )
 
 
@@ -126,6 +127,8 @@ def test_numbers_are_read_from_the_series_as_stated():
     assert (at("end"), at("max"), at("min"), at(0.5)) == (4.0, 8.0, 3.0, 7.0)
     assert at({"first_below": 6.0}) == 1.0
     assert at({"last_above": 4.0}) == 1.0
+    assert at({"first_above": 7.0}) == 0.0
+    assert at({"first_above": 9.0}) == np.inf
     assert at({"first_below": 0.5, "share_of": "fall"}) == 1.0  # (6 - 4)/(8 - 4)
     assert at({"last_above": 0.45, "share_of": "peak"}) == 3.0  # 4/8
     assert at({"first_below": 1.0}) == np.inf
