@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import pydantic
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.schema.look import LookSection
 from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.sections import Refused, quantity
 from porescale.lbm.scales import NAMES
@@ -75,6 +76,7 @@ class Scene(SceneBase):
     homogenise: Homogenise | None = None
     lubrication: Lubrication | None = None
     sleep: Sleep | None = None
+    look: LookSection | None = None
 
     @classmethod
     def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
