@@ -16,6 +16,8 @@ LINE = {-1: ("phreatic", "#c0182b")}
 """Of the surface of the water in soil, which is no particle's layer."""
 AIR = {3: ("air", "#e2e2e2")}
 """And of air in it."""
+GROUND = ("water", "#5b8fd0"), ("soil", "#d9bd82")
+"""Of particles that are all of one kind."""
 TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 """Names and colours of two fluids."""
 

@@ -38,6 +38,9 @@ from porescale.scene.output import Output
 from porescale.scene.sleep import Sleep
 from porescale.scene.time import Time
 
+QUICK = 500_000
+"""Cells of a lattice that are built within a second."""
+
 
 class Scene(SceneBase):
     """A scene: box, time, output, and the parts it needs."""
@@ -89,6 +92,14 @@ class Scene(SceneBase):
     def _one_or_more(cls, given: Any) -> Any:
         """[bonds] is the same as one [[bonds]]."""
         return [given] if isinstance(given, Mapping) else given
+
+    @property
+    def drawn_at_once(self) -> bool:
+        """Whether nothing must be settled or pressed before it is drawn, and the lattice is no large one."""
+        cells = (
+            self.domain.width * self.domain.height / self.fluid.spacing**2 if self.fluid and self.fluid.spacing else 0
+        )
+        return (self.grains is None or self.grains.packing is None) and self.rock is None and cells <= QUICK
 
     @pydantic.model_validator(mode="before")
     @classmethod
