@@ -26,7 +26,7 @@ def lens_of(scene: Scene, snapshot: Snapshot) -> Lens:
     """The lens on particles in the middle of what is there."""
     spacing, at = scene.numerics.spacing, snapshot.clouds["particles"].position
     middle = at[int(np.hypot(*(at - np.median(at, axis=0)).T).argmin())]
-    words = f"particles {spacing:.4g} m apart, h = {scene.numerics.smoothing_ratio:g} of it"
+    words = f"spacing {spacing:.4g} m, smoothing length {scene.numerics.smoothing_ratio * spacing:.4g} m"
     return Lens(spacing, (float(middle[0]), float(middle[1])), 0.0, words, lattice=False)
 
 

@@ -82,12 +82,9 @@ def _gate(scene: Scene) -> Iterator[Feature]:
     yield Feature("moves", f"gate, {how} at {gate.opens_at:g} s", path=((gate.x, 0.0), (gate.x, h)), course=course)
 
 
-def _course(
-    scene: Scene, start: tuple[float, float], way: Callable[[float], Sequence[float]]
-) -> list[tuple[float, float]]:
-    """Points that something at ``start`` passes until the end, as far as they are within the box and a little more."""
+def _course(scene: Scene, start: tuple[float, float], way: Callable[[float], Sequence[float]]) -> Points:
+    """Points that something at ``start`` passes until the end, as far as they are within the box."""
     w, h = scene.domain.width, scene.domain.height
-    more = 0.04 * max(w, h)
     points = []
     for time in np.linspace(0.0, scene.time.end, STOPS):
         x, y = (start[0] + way(float(time))[0], start[1] + way(float(time))[1])
@@ -160,14 +157,12 @@ def _containers(scene: Scene) -> Iterator[Feature]:
             continue
         far = points[int(np.hypot(*(points - pivot).T).argmax())]
 
-        def way(
-            time: float, it: Any = it, arm: AnyArray = far - pivot, start: AnyArray = far, pivot: Any = pivot
-        ) -> Any:
+        def way(time: float, it: Any = it, arm: AnyArray = far - pivot) -> Any:
             """How far its end has come."""
             angle = _shift(it.rotation, time)
             c, s = math.cos(angle), math.sin(angle)
-            turned = pivot + (c * arm[0] - s * arm[1], s * arm[0] + c * arm[1])
-            return turned + (_shift(it.x, time), _shift(it.y, time)) - start
+            turned = np.array([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]])
+            return turned - arm + np.array([_shift(it.x, time), _shift(it.y, time)])
 
         yield Feature("moves", f"{name}, driven", course=_course(scene, (float(far[0]), float(far[1])), way),
                       marks=(tuple(far),))  # fmt: skip
@@ -199,8 +194,8 @@ def _packing(scene: Scene) -> Iterator[Feature]:
         return
     left, bottom, width, height = (float(it) for it in box if it is not None)
     corners = ((left, bottom), (left + width, bottom), (left + width, bottom + height), (left, bottom + height))
-    yield Feature("side", f"packing, {_length(width)} x {_length(height)}", path=(*corners, corners[0]), dashed=True,
-                  at=(left + 0.35 * width, bottom + height))  # fmt: skip
+    label, at = f"packing, {_length(width)} wide, {_length(height)} high", (left + 0.35 * width, bottom + height)
+    yield Feature("side", label, path=(*corners, corners[0]), dashed=True, at=at)
 
 
 def _measured(scene: Scene) -> Iterator[Feature]:

@@ -4,14 +4,13 @@ import json as json_text
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
 from porescale.common.cli.options import Json, Quality, Scene, Settings, require_scene
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.schema.scene import SceneBase
 
 Drawing = Annotated[
     list[Path] | None,
@@ -61,7 +60,7 @@ def drawing(file: Path = Path("scene.png")) -> Path:
     return file
 
 
-def draw(scene: SceneBase, file: Path) -> None:
+def draw(scene: Any, file: Path) -> None:
     """Write the picture of a scene and name it; a packing that is settled for it says how far it is."""
     scene.picture().save(file)
     print(file, file=sys.stderr)

@@ -10,7 +10,6 @@ from cyclopts import Parameter
 from porescale.common.cli.folders import unusable
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.schema.scene import SceneBase
 
 From = Annotated[str | None, Parameter(name="--from", help="name of a case (see `cases`) to copy instead")]
 
@@ -80,6 +79,7 @@ def _copy(package: Package, name: str, folder: Path) -> None:
 def _draw(package: Package, folder: Path) -> None:
     """Draw the scene in ``folder`` into scene.png, where it takes no longer than to look at it; else say what does."""
     from porescale.common.cli.check import draw
+    from porescale.common.schema.scene import SceneBase
     from porescale.common.schema.sections import open_scene
 
     scene = open_scene(folder, package.scene()).scene

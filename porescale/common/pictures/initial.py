@@ -170,10 +170,11 @@ def _draw(axes: Axes, feature: Feature, factor: float) -> None:
         axes.plot(*(np.array(feature.path) * factor).T, style, color=colour, linewidth=wide, zorder=3, clip_on=False)
     if feature.marks:
         axes.plot(*(np.array(feature.marks) * factor).T, "x", color=colour, markersize=6, markeredgewidth=1.6, zorder=4)
-    if len(feature.course) > 1:
+    if len(feature.course) > 1 and np.ptp(np.array(feature.course)):
         way = np.array(feature.course) * factor
         axes.plot(*way.T, "-", color=colour, linewidth=1.2, zorder=3.5, clip_on=True)
-        axes.annotate("", way[-1], way[-2], arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2}, zorder=3.6,
+        before = way[np.hypot(*(way - way[-1]).T) > 1e-9 * np.ptp(way)]  # it may stand still at the end
+        axes.annotate("", way[-1], before[-1], arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2}, zorder=3.6,
                       annotation_clip=True)  # fmt: skip
 
 
