@@ -18,7 +18,7 @@ from continuum_sph.validation.seepage.heave import (
     rising,
 )
 from continuum_sph.validation.seepage.sheet_pile import AROUND, Around, SheetPile, one_side
-from tests.reference.sheet_pile import around, bounds, seen, weakest_prism
+from tests.reference.continuum.sheet_pile import around, bounds, seen, weakest_prism
 from tests.validation.tolerances import ROWS, tolerance
 
 ROW = ROWS["continuum.heave_behind_pile"]
