@@ -45,9 +45,17 @@ def _ground(scene: Scene) -> Iterator[Feature]:
     """Pieces of soil, and the sheet pile in it."""
     if scene.soil is not None:
         wet = ", pores full" if scene.soil.saturated else ", with suction" if scene.soil.suction else ""
+        wet += ", held" * scene.soil.held
         for k, body in enumerate(scene.soil.body):
             name = "soil" if len(scene.soil.body) == 1 else f"soil {k}"
             yield Feature("side", f"{name}{wet}", path=(*body.outline, body.outline[0]))
+        if (level := scene.soil.water_table) is not None:
+            path = ((0.0, level), (scene.tank.width, level))
+            yield Feature(
+                "open", f"water table, {level:g} m", path=path, dashed=True, at=(0.9 * scene.tank.width, level)
+            )
+        for k, part in enumerate(scene.soil.watch):
+            yield Feature("measures", f"watched {part.name or f'part {k}'}", area=part.outline)
     if scene.pile is not None:
         x, spacing = scene.pile.column(scene.numerics.spacing), scene.numerics.spacing
         label = f"sheet pile, tip at {scene.pile.tip:g} m, faces {scene.pile.faces}"

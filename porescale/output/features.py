@@ -85,7 +85,7 @@ def _gate(scene: Scene) -> Iterator[Feature]:
 def _course(scene: Scene, start: tuple[float, float], way: Callable[[float], Sequence[float]]) -> Points:
     """Points that something at ``start`` passes until the end, as far as they are within the box."""
     w, h = scene.domain.width, scene.domain.height
-    points = []
+    points: list[tuple[float, float]] = []
     for time in np.linspace(0.0, scene.time.end, STOPS):
         x, y = (start[0] + way(float(time))[0], start[1] + way(float(time))[1])
         if points and not (0.0 <= x <= w and 0.0 <= y <= h):
@@ -109,9 +109,9 @@ def _rectangles(scene: Scene) -> Iterator[Feature]:
         when = f" from {it.starts_at:g} s" if it.starts_at else ""
         label = f"rectangle {k} moves at ({it.velocity[0]:g}, {it.velocity[1]:g}) m/s{when}"
         yield Feature("moves", label, area=corners, course=course)
-    for k, corners in enumerate(fixed):
+    for k, edges in enumerate(fixed):
         many = f"{len(fixed)} fixed rectangles" if len(fixed) > 1 else "fixed rectangle"
-        yield Feature("side", many if k == 0 else "", area=corners)
+        yield Feature("side", many if k == 0 else "", area=edges)
 
 
 def _discs(scene: Scene) -> Iterator[Feature]:

@@ -82,6 +82,8 @@ def _draw(package: Package, folder: Path) -> None:
     from porescale.common.schema.scene import SceneBase
     from porescale.common.schema.sections import open_scene
 
+    if not (folder / "scene.toml").is_file():
+        return
     scene = open_scene(folder, package.scene()).scene
     if isinstance(scene, SceneBase) and scene.drawn_at_once:
         draw(scene, folder / "scene.png")
