@@ -40,6 +40,8 @@ from porescale.scene.time import Time
 
 QUICK = 500_000
 """Cells of a lattice that are built within a second."""
+FEW = 400
+"""Squares of a diameter in a packing that settles within seconds."""
 
 
 class Scene(SceneBase):
@@ -95,11 +97,12 @@ class Scene(SceneBase):
 
     @property
     def drawn_at_once(self) -> bool:
-        """Whether nothing must be settled or pressed before it is drawn, and the lattice is no large one."""
-        cells = (
-            self.domain.width * self.domain.height / self.fluid.spacing**2 if self.fluid and self.fluid.spacing else 0
-        )
-        return (self.grains is None or self.grains.packing is None) and self.rock is None and cells <= QUICK
+        """Whether next to nothing must be settled or pressed before it is drawn, and the lattice is no large one."""
+        packing, spacing = self.grains.packing if self.grains else None, self.fluid.spacing if self.fluid else None
+        large = spacing is not None and self.domain.width * self.domain.height > QUICK * spacing**2
+        sizes = [getattr(packing, name, None) for name in ("width", "height", "diameter")]
+        filled = None not in sizes and sizes[0] * sizes[1] <= FEW * sizes[2] ** 2
+        return (packing is None or filled) and self.rock is None and not large
 
     @pydantic.model_validator(mode="before")
     @classmethod
