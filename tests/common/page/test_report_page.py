@@ -391,9 +391,9 @@ def test_a_run_leaves_its_page_with_its_pictures_unless_it_shall_not(monkeypatch
     program, pages, ends = import_module(module), [], []
     monkeypatch.setattr("porescale.common.page.page.write_report", lambda folder, _: pages.append(folder))
     monkeypatch.setattr(program, "show", lambda folder: [folder / "film.mp4"] if pictures else [])
-    for patched in ("porescale.analysis.bed_permeability.write_permeability", "porescale.common.record.open_run.open_run",
-                    "porescale.builders.cost.remember"):  # fmt: skip
-        monkeypatch.setattr(patched, lambda *_: None)
+    for patched in ("analysis.bed_permeability.write_permeability", "common.record.open_run.open_run"):
+        monkeypatch.setattr(f"porescale.{patched}", lambda *_: None)
+    monkeypatch.setattr("porescale.builders.cost.remember", lambda *_: None)
     done = SimpleNamespace(steps_per_second=1.0)
     name = "porescale.common.api.run_scene.drive_scene" if module == "porescale.program" else f"{module}.drive_scene"
     monkeypatch.setattr(name, lambda *_, after, **more: ends.append(after) or done)
