@@ -100,9 +100,8 @@ class Scene(SceneBase):
         """Whether next to nothing must be settled or pressed before it is drawn, and the lattice is no large one."""
         packing, spacing = self.grains.packing if self.grains else None, self.fluid.spacing if self.fluid else None
         large = spacing is not None and self.domain.width * self.domain.height > QUICK * spacing**2
-        sizes = [getattr(packing, name, None) for name in ("width", "height", "diameter")]
-        filled = None not in sizes and sizes[0] * sizes[1] <= FEW * sizes[2] ** 2
-        return (packing is None or filled) and self.rock is None and not large
+        many = packing is not None and packing.width * packing.height > FEW * packing.diameter**2
+        return not many and self.rock is None and not large
 
     @pydantic.model_validator(mode="before")
     @classmethod
