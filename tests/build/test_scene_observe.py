@@ -15,8 +15,6 @@ from porescale.lbm.scales import Scales
 from porescale.output.surface import surface
 from tests.reference.scenes import column, dry, grain, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
 
 def hand(*grains):
     return build(dry(grains={"density": 2500, "grain": list(grains)}, gravity=[0.0, 0.0]))
