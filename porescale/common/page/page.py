@@ -160,8 +160,13 @@ def page(title: str, runs: Sequence[Sequence[tuple[str, bytes]]]) -> str:
 
 @cache
 def script() -> str:
-    """All of static's JavaScript as one module: imports between its files left out, exports kept as functions."""
-    text = "\n".join(static(name) for name in SCRIPTS)
+    """All of static's JavaScript as one module."""
+    return joined([static(name) for name in SCRIPTS])
+
+
+def joined(texts: Sequence[str]) -> str:
+    """Files of JavaScript as one module: imports between them left out, exports kept as functions."""
+    text = "\n".join(texts)
     text = re.sub(r"^import [^;]*? from \"\./[^;]*;\n", "", text, flags=re.MULTILINE)
     return re.sub(r"^export (?=(async )?(function|class|const))", "", text, flags=re.MULTILINE)
 

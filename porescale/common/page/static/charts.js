@@ -56,7 +56,7 @@ export class Chart {
     }
   }
 
-  /** Show curves {x, y, label}; y may hold nulls. */
+  /** Show curves {x, y}, and colour and label where given; y may hold nulls. */
   set(curves) {
     this.curves = curves;
     const xs = curves.flatMap((it) => [it.x[0], it.x.at(-1)]).filter(Number.isFinite);
@@ -100,7 +100,7 @@ export class Chart {
     }
     const axis = { x: SIZE.width - SIZE.right, y: base + 16, "text-anchor": "end" };
     this.svg.append(drawn("text", axis, this.axis));
-    this.curves.forEach(({ x, y }, k) => {
+    this.curves.forEach(({ x, y, colour, label }, k) => {
       let path = "";
       let pen = "M";
       for (let i = 0; i < x.length; i++) {
@@ -112,8 +112,8 @@ export class Chart {
         path += `${pen}${a.toFixed(1)},${b.toFixed(1)}`;
         pen = "L";
       }
-      const dashes = k ? { "stroke-dasharray": "5 3" } : {};
-      this.svg.append(drawn("path", { d: path, class: "curve", style: `stroke: ${STROKES[k % 4]}`, ...dashes }));
+      const dashes = k && !colour ? { "stroke-dasharray": "5 3" } : {};
+      this.svg.append(drawn("path", { d: path, class: "curve", "data-label": label ?? "", style: `stroke: ${colour ?? STROKES[k % 4]}`, ...dashes }));
     });
     this.cursor = drawn("line", { y1: SIZE.top, y2: base, class: "cursor" });
     this.svg.append(this.cursor);
@@ -150,7 +150,7 @@ export class TableCharts {
     table.columns.slice(1).forEach(({ name, unit }, k) => {
       const chart = new Chart({ title: name, unit, axis: "t (s)", go });
       const found = tables.map((it) => [it, it.columns.findIndex((c) => c.name === name && c.unit === unit)]);
-      chart.set(found.filter(([, at]) => at >= 0).map(([it, at]) => ({ x: it.data[0], y: it.data[at] })));
+      chart.set(found.filter(([, at]) => at >= 0).map(([it, at]) => ({ ...it, x: it.data[0], y: it.data[at] })));
       this.add(chart, `${name} ${unit}`);
       chart.column = k + 1;
     });
