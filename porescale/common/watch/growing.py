@@ -84,7 +84,7 @@ class Growing:
         }
 
     def run(self) -> Run:
-        """The run as it is now, the same object while no snapshot and no card is new; InputError where there is none."""
+        """The run as it is now, the same object while no snapshot and no card is new; InputError if there is none."""
         from porescale.common.api.open_run import Run
 
         if (self.folder / CARD).exists() and not inside(self.folder, self.folder / CARD):

@@ -12,6 +12,7 @@ from porescale.common.page.page import static as of_report
 
 START = {
     "run": "await follow(page, new Remote(ask));",
+    "point": 'await follow(page, new Remote(ask), { back: "../../" });',
     "sweep": "await openSweep(page, page.dataset.title);",
     "nothing": 'page.textContent = "Nothing is written here yet. This page shows the run as soon as it begins.";\n'
     'await again(async () => JSON.parse(new TextDecoder().decode(await ask("kind"))) !== "nothing", () => {});\n'
@@ -21,7 +22,7 @@ START = {
 
 
 def shell(kind: str, title: str) -> str:
-    """The page of a "run", a "sweep" or "nothing"."""
+    """The page of a "run", a "point" of a sweep, a "sweep" or "nothing"."""
     parts = {"title": escape(title), "css": css(), "script": live_script(), "start": START[kind]}
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], static("live.html"))
 

@@ -140,12 +140,12 @@ class Site:
                 growing = self._points.run(name)
                 if growing is None:
                     return None
-                return page(RUN, name) if rest == [""] else Data(growing)(rest)
+                return page("point", name) if rest == [""] else Data(growing)(rest)
         return None
 
 
 def page(kind: str, name: str) -> Answer:
-    """The page of a run, of a sweep, or of nothing yet."""
+    """The page of a kind of `shell`."""
     return Answer(shell(kind, name).encode(), "text/html; charset=utf-8")
 
 

@@ -73,21 +73,23 @@ export function progress({ outcome, problem, time, end, steps, age }) {
   return words.join(" · ");
 }
 
-const ago = (seconds) =>
+/** Seconds in the unit that says enough. */
+export const ago = (seconds) =>
   seconds < 90 ? `${Math.round(seconds)} s` : seconds < 5400 ? `${Math.round(seconds / 60)} min` : `${Math.round(seconds / 3600)} h`;
 
 const grown = (now, before) =>
   now.steps.length !== before.steps.length || now.outcome !== before.outcome || JSON.stringify(now.tables) !== JSON.stringify(before.tables);
 
-/** The page of a run in an element, kept new while the element is there;  ends : and while the run is running. */
-export async function follow(element, source, { ends = false } = {}) {
+/** The page of a run in an element, kept new while the element is there;  ends : and while the run is running;
+ *  back : where a link to all runs leads. */
+export async function follow(element, source, { ends = false, back = "" } = {}) {
   const line = make("p", { class: "live", role: "status" }, "reading the run …");
   const say = (text, state) => {
     line.textContent = text;
     line.dataset.state = state;
   };
   let [seen, report, place] = [null, null, null];
-  element.replaceChildren(line);
+  element.replaceChildren(line, ...(back ? [make("a", { class: "back", href: back }, "← all runs")] : []));
   const look = async () => {
     if (seen && !element.isConnected) return true;
     const state = await source.state();

@@ -2,22 +2,29 @@
 
 import { TableCharts, make } from "./charts.js";
 import { shown } from "./colours.js";
-import { again, ask, progress } from "./live.js";
+import { again, ago, ask } from "./live.js";
 import { section, table } from "./panels.js";
 
 const fromServer = async (name) => JSON.parse(new TextDecoder().decode(await ask(name)));
 const pageOf = (name) => `run/${encodeURIComponent(name)}/`;
 
+/** How a point stands, in words. */
+function stateOf({ state, problem }) {
+  if (!state) return problem;
+  const { outcome, time, end, age } = state;
+  const words = outcome !== "running" ? [] : [end && time !== null ? `${Math.min(100, Math.floor((100 * time) / end))} %` : "", `written ${ago(age)} ago`];
+  return [outcome || "run", ...words, problem].filter(Boolean).join(" · ");
+}
+
 export class Sweep {
   constructor(element, title) {
-    Object.assign(this, { element, rows: [], series: new Map(), by: null, down: false });
-    element.classList.add("porescale-report");
+    Object.assign(this, { element, rows: [], series: new Map(), images: new Map(), by: null, down: false });
     this.line = make("p", { class: "live", role: "status" }, "reading the runs …");
     this.list = make("div", { class: "points" });
     this.curves = make("div");
     this.find = make("input", { type: "search", placeholder: "front, energy, force …", "aria-label": "columns to show", oninput: () => this.charts?.filter(this.find.value) });
-    element.replaceChildren(make("h1", {}, title), this.line, section("points", "Points", this.list),
-      section("curves", "Over time", make("p", { class: "finder" }, "Columns ", this.find), this.curves));
+    element.replaceChildren(this.line, make("main", { class: "porescale-report sweep" }, make("h1", {}, title), section("points", "Points", this.list),
+      section("curves", "Over time", make("p", { class: "finder" }, "Columns ", this.find), this.curves)));
   }
 
   say(text, state = "") {
@@ -39,16 +46,20 @@ export class Sweep {
     const count = (outcome) => rows.filter((it) => it.state?.outcome === outcome).length;
     const words = ["finished", "running", "unstable", "failed", "interrupted"].map((it) => [count(it), it]).filter(([it]) => it);
     this.say([`${rows.length} run${rows.length === 1 ? "" : "s"}`, ...words.map((it) => it.join(" "))].join(" · "), count("running") ? "running" : "finished");
-    this.fill();
+    const now = JSON.stringify(rows.map((it) => ({ ...it, state: { ...it.state, age: stateOf(it) } })));
+    if (now !== this.told) this.fill();
+    this.told = now;
     if (more) this.draw();
     return false;
   }
 
-  /** Columns that any of the points has: [title, group, key]. */
+  /** Columns that any of the points has, of what they set those in which they differ: [title, group, key]. */
   columns() {
     const keys = (group) => [...new Set(this.rows.flatMap((it) => Object.keys(it[group])))];
-    const told = (group) => keys(group).filter((key) => this.rows.some((it) => it[group][key] !== null));
-    return [...["values", "numbers", "cost"].flatMap((group) => told(group).map((key) => [key, group, key]))];
+    const least = (group) => (group === "values" && this.rows.length > 1 ? 2 : 1);
+    const kinds = (group, key) => new Set(this.rows.map((it) => it[group][key] ?? null));
+    const told = (group) => keys(group).filter((key) => kinds(group, key).size >= least(group) && !(kinds(group, key).size === 1 && kinds(group, key).has(null)));
+    return ["values", "numbers", "cost"].flatMap((group) => told(group).map((key) => [key, group, key]));
   }
 
   value(row, [, group, key]) {
@@ -70,6 +81,12 @@ export class Sweep {
     return `var(--curve, hsl(${Math.round(215 + 190 * at)} 70% var(--curve-light)))`;
   }
 
+  /** A small picture, asked for once. */
+  image(src) {
+    if (!this.images.has(src)) this.images.set(src, make("img", { src, alt: "" }));
+    return this.images.get(src);
+  }
+
   /** The table. */
   fill() {
     const held = document.activeElement?.dataset?.column;
@@ -85,13 +102,13 @@ export class Sweep {
     });
     const rows = this.sorted().map((row) => {
       const { name, state } = row;
-      const image = row.picture ? make("img", { src: `picture/${encodeURIComponent(name)}?step=${state.steps.at(-1)}`, alt: "", loading: "lazy" }) : "";
+      const image = row.picture ? this.image(`picture/${encodeURIComponent(name)}?step=${state.steps.at(-1)}`) : "";
       const link = make("a", { href: pageOf(name) }, image, make("span", { style: `border-color: ${this.colour(name)}` }, name));
-      const said = make("td", { class: "state", "data-state": state?.outcome ?? "failed" }, state ? progress({ ...state, problem: row.problem }) : row.problem,
+      const said = make("td", { class: "state", "data-state": state?.outcome ?? "failed" }, stateOf(row),
         state?.end && state.outcome === "running" ? make("progress", { max: state.end, value: state.time ?? 0, "aria-label": `progress of ${name}` }) : "");
       const made = make("tr", {}, make("th", { scope: "row" }, link), said, ...columns.slice(2).map((column) => {
         const value = this.value(row, column);
-        return make("td", { class: typeof value === "number" ? "number" : "" }, value === null ? "" : typeof value === "number" ? shown(value) : String(value));
+        return make("td", {}, value === null ? "" : typeof value === "number" ? shown(value) : String(value));
       }));
       for (const [event, on] of [["pointerenter", true], ["pointerleave", false], ["focusin", true], ["focusout", false]]) made.addEventListener(event, () => this.point(on ? name : null));
       return made;
