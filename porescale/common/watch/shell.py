@@ -7,8 +7,9 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 
-from porescale.common.page.page import joined, script
-from porescale.common.page.page import static as of_report
+from porescale.common.page.page import script
+from porescale.common.page.scripts import joined
+from porescale.common.page.scripts import static as of_report
 
 START = {
     "run": "await follow(page, new Remote(ask));",
