@@ -83,6 +83,7 @@ def test_a_page_without_a_run_becomes_that_of_the_run(page, tmp_path):
         page.goto(server.link)
         page.get_by_text("Nothing is written here yet").wait_for(timeout=SOON)
         toy_run(tmp_path / "run")
+        page.locator("canvas").first.wait_for(timeout=SOON)  # that page is loaded anew
         shows(page, "report?.drawn?.step === 30")
 
 
