@@ -23,7 +23,6 @@ from porescale.piv.images.synth import Camera
 from porescale.validation.piv import surfaces as lab
 from porescale.validation.piv.surfaces import VALIDATIONS
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SIDE, CELLS, TURN = 0.032, 64, 2.0
 
 

@@ -15,7 +15,6 @@ from porescale.piv.images import flows
 from porescale.piv.images.synth import Camera, pair
 from porescale.piv.review import review
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = (128, 160)
 REGION = (16, 8, 144, 120)
 SCALE = {"scale": 1e-4, "interval": 5e-3}
