@@ -129,7 +129,8 @@ def specimen(scene: Scene) -> dict[str, Any]:
     grains = {
         "diameter": packing.diameter, "size_spread": packing.size_spread, "seed": packing.seed,
         "settling_friction": packing.settling_friction,
-        "settling_rolling_friction": packing.settling_rolling_friction, "material": packing.material, "log_spread": packing.log_spread,
+        "settling_rolling_friction": packing.settling_rolling_friction, "material": packing.material,
+        "log_spread": packing.log_spread,
         "grading": [list(pair) for pair in packing.grading], "packing_fraction": SOLID,
     }  # fmt: skip
     if packing.grading:
