@@ -6,7 +6,8 @@ def test_of_a_page(page, heard, axe, file):
     assert heard.requests == [file.as_uri()]      # nothing else was loaded
     assert axe(page) == []
 
-A page whose test ends with an error on its console, or that asked for anything outside this machine, fails its test.
+Wait with `playwright.sync_api.expect`, not with `wait_for_function`, which pages forbid (it evaluates text).  A page
+with an error on its console at its test's end, or that asked for anything outside this machine, fails the test.
 """
 
 import json

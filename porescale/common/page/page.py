@@ -9,7 +9,6 @@ from base64 import b64encode
 from collections.abc import Iterator, Sequence
 from functools import cache
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +19,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.page.frames import kept, pack
 from porescale.common.page.meta import meta
 from porescale.common.page.quantise import Precision
+from porescale.common.page.scripts import joined, static
 from porescale.common.page.tables import table
 from porescale.common.record.card import plain
 
@@ -160,13 +160,5 @@ def page(title: str, runs: Sequence[Sequence[tuple[str, bytes]]]) -> str:
 
 @cache
 def script() -> str:
-    """All of static's JavaScript as one module: imports between its files left out, exports kept as functions."""
-    text = "\n".join(static(name) for name in SCRIPTS)
-    text = re.sub(r"^import [^;]*? from \"\./[^;]*;\n", "", text, flags=re.MULTILINE)
-    return re.sub(r"^export (?=(async )?(function|class|const))", "", text, flags=re.MULTILINE)
-
-
-@cache
-def static(name: str) -> str:
-    """The text of a file of the page."""
-    return files("porescale.common.page").joinpath("static", name).read_text(encoding="utf-8")
+    """All of static's JavaScript as one module."""
+    return joined(static(name) for name in SCRIPTS)
