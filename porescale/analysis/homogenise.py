@@ -93,6 +93,12 @@ def stiffness_over_pressure(scene: Scene) -> float:
     return law.stiffness / pressure_of(scene)
 
 
+def lambda_error(scene: Scene) -> float:
+    """By how much the hydraulic radius ratio of a scene may be off, relative; 0 where none is stated."""
+    ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
+    return section_of(scene).ratio_error / ratio if ratio else 0.0
+
+
 def ramp_of(section: Homogenise, packing: Packing) -> float:
     """Rate times the time in which a test comes to it: slowly enough for the stiffness of its first loading.
 
@@ -122,7 +128,9 @@ def specimen(scene: Scene) -> dict[str, Any]:
     end = section.strain / rate + 0.5 * ramp
     grains = {
         "diameter": packing.diameter, "size_spread": packing.size_spread, "seed": packing.seed,
-        "settling_friction": packing.settling_friction, "material": packing.material, "log_spread": packing.log_spread,
+        "settling_friction": packing.settling_friction,
+        "settling_rolling_friction": packing.settling_rolling_friction, "material": packing.material,
+        "log_spread": packing.log_spread,
         "grading": [list(pair) for pair in packing.grading], "packing_fraction": SOLID,
     }  # fmt: skip
     if packing.grading:

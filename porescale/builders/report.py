@@ -117,6 +117,7 @@ def _grains(grains: Grains, count: int, derived: Derived, wanted: float | None, 
     if derived.scales:
         ratio = grains.hydraulic_radius_ratio or 1.0
         out.row("cells per diameter", mean / derived.scales.spacing)
+        out.row("cells per diameter of the smallest", low / derived.scales.spacing, "", "in the fluid: times lambda")
         out.row("hydraulic radius ratio", ratio, "", "lambda; 1 seals a 2-D bed at rest")
         out.row("cells per hydraulic diameter", ratio * mean / derived.scales.spacing)
         if packing := grains.packing:
@@ -223,7 +224,9 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     out.heading("Cost")
     out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
     out.row("memory", memory(derived) / 2**20, "MiB")
-    known = "by this machine's last run" if measured else "a guess until this machine has done a run"
+    known = (
+        "by this machine's last runs of such scenes" if measured else "a guess until this machine has done such a run"
+    )
     out.row("time", seconds, "s", known)
     if seconds > WEEK:
         out.warn(

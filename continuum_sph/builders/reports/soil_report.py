@@ -16,8 +16,11 @@ SOFTEST = 1e-3
 """Strain under its own weight above which soil is so soft that its shape is not the scene's."""
 
 
-def soil_report(scene: Scene) -> Report:
-    """Resolution, stiffness, strength, steps and cost; warns of soil too soft for its weight."""
+def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Report:
+    """Resolution, stiffness, strength, steps and cost; warns of soil too soft for its weight.
+
+    bound : on the step, s;  more : what else a particle costs in a step, s.
+    """
     section, law = soil_section(scene), soil_law(scene)
     material, spacing = material_of(section), law.spacing
     count = len(soil_particles(scene)[0])
@@ -50,10 +53,11 @@ def soil_report(scene: Scene) -> Report:
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
     step = min(limits)
     out.row("longest step", step, "s", f"limited by {RULES[limits.index(step)]}")
-    steps = scene.time.end / step
+    steps = scene.time.end / min(step, bound)
     out.row("steps", round(steps))
     out.row("memory", BYTES * count / 2**20, "MiB")
-    out.row("expected time", steps * count / RATE, "s", f"at {RATE:.2g} particle-steps/s, one thread")
+    rate = 1.0 / (1.0 / RATE + more)
+    out.row("expected time", steps * count / rate, "s", f"at {rate:.2g} particle-steps/s, one thread")
     report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
     if strain > 10.0 * SOFTEST:
@@ -62,16 +66,21 @@ def soil_report(scene: Scene) -> Report:
 
 
 def report_origin(out: Report, origin: Origin | None) -> None:
-    """Add to a report what a scene's soil was measured with, and how well."""
+    """Add to a report what a scene's soil was measured with, how well, and what is to be doubted of it."""
     if origin is None:
         return
     out.heading("measured on grains")
     out.row("file", origin.file, "", f"SHA-256 {origin.sha256[:12]}")
-    for name, (mean, error) in origin.measured.items():
-        out.row(name.replace("_", " "), mean, "", f"± {error:.2g} (standard error)")
+    for name, (mean, _) in origin.measured.items():
+        scale, unit = (math.degrees(1.0), "degrees") if name.endswith("angle") else (1.0, "")
+        wide = origin.intervals.get(name)
+        bar = "no interval: too few packings" if wide is None else f"± {scale * wide:.2g} (95 %)"
+        out.row(name.replace("_", " "), scale * mean, unit, bar)
     for key in ("command", "version", "lambda", "cells", "pressure"):
         if isinstance(value := origin.made.get(key), str | int | float):
             out.row(key, value)
+    for doubt in origin.made.get("doubts") or ():
+        out.warn(f"{origin.file}: {doubt}")
 
 
 def report_watched(scene: Scene, out: Report) -> None:
