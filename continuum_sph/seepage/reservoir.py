@@ -85,7 +85,7 @@ class Reservoir:
 
     left, right, bottom : m;  times (k,) s and levels (k,) m : straight lines between them, constant before and after;
     walls : whether each end lies at a wall of the tank;  let_in, let_out : mass recorded so far, kg/m;  level : of the
-    last step, m.
+    last step, m;  held, stood : mass by which that is measured, now and at the start, kg/m.
     """
 
     name: str
@@ -98,6 +98,8 @@ class Reservoir:
     let_in: float = 0.0
     let_out: float = 0.0
     level: float = 0.0
+    held: float = 0.0
+    stood: float = field(default=float("nan"))
     tops: Floats = field(default_factory=lambda: np.zeros(0))
     ramps: tuple[float, float] = (0.0, 0.0)
 
@@ -112,6 +114,12 @@ class Reservoir:
     def width(self) -> float:
         """Effective width of the strip, ∫ w dx, m."""
         return self.right - self.left - 0.5 * sum(self.ramps)
+
+    @property
+    def passed(self) -> float:
+        """Mass that has gone from the strip into the rest of the tank since the start, kg/m: what was let in less what
+        was let out, and less what the strip holds more.  It has no steps of whole particles."""
+        return self.let_in - self.let_out + self.stood - self.held
 
     def wanted(self, time: float) -> float:
         """Level (m) at a ``time`` (s)."""
@@ -158,6 +166,9 @@ class Supply:
                 self.spacing, -1.0 if target <= pool.bottom else 0.5, pool.tops,
             )  # fmt: skip
             over = held - full * (target - pool.bottom)
+            if np.isnan(pool.stood):
+                pool.stood = held
+            pool.held = held
             pool.level = pool.bottom + held / full
             if highest >= 0 and (over > 0.5 * layer.mass[highest] or target <= pool.bottom):
                 pool.let_out += float(layer.mass[highest])
@@ -197,13 +208,14 @@ class Supply:
             "let_in": np.array([pool.let_in for pool in self.reservoirs]),
             "let_out": np.array([pool.let_out for pool in self.reservoirs]),
             "level": np.array([pool.level for pool in self.reservoirs]),
+            "held": np.array([pool.held for pool in self.reservoirs]),
         }
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go on from the ``state`` of a supply of the same reservoirs."""
-        rows = zip(self.reservoirs, state["let_in"], state["let_out"], state["level"], strict=True)
-        for pool, let_in, let_out, level in rows:
-            pool.let_in, pool.let_out, pool.level = float(let_in), float(let_out), float(level)
+        for name in ("let_in", "let_out", "level", "held"):
+            for pool, value in zip(self.reservoirs, state[name], strict=True):
+                setattr(pool, name, float(value))
 
 
 def berths(count: int, width: float, floor: float, pitch: float) -> Floats:
