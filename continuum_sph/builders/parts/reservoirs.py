@@ -43,7 +43,7 @@ class ReservoirPart(Part):
         NAME let in (kg/m) : mass that it has let into the tank
         NAME let out (kg/m) : mass that it has taken out
         NAME passed on (kg/m) : mass that has gone from it into the rest of the tank: let in less let out and less what
-            more it holds, without steps of whole particles while its level lies above its bottom
+            more it holds: smoother than these, which go in steps of whole particles
         """
         row = {}
         for it in self.supply.reservoirs:

@@ -262,9 +262,9 @@ def rising(given: Heave) -> float:
 
 @VALIDATIONS.row(
     "continuum.exit_gradient_in_a_run",
-    source="exact: conformal mapping of ground that ends 1 T beside the sheet (the way of Harr 1962); s/T 0.5 and 0.75",
-    because="open water covers the ground with whole particles, so the head of either side is uncertain to a fifth of a "
-    "spacing, 1/80 T, of 1.5 i_c s, 3.4 % together for s = T/2; and 2 % as in ground that is held",
+    source="exact: conformal mapping of ground that ends 1 T beside the sheet (the way of Harr 1962); s/T 0.5, 0.75",
+    because="open water covers the ground with whole particles, so the head of either side is uncertain to a fifth of "
+    "a spacing, 1/80 T, of 1.5 i_c s, 3.4 % together for s = T/2; and 2 % as in ground that is held",
     tolerance=2.0 / (5.0 * 16 * 1.5 * 0.99 * 0.5) + 0.02,
     slow=True,
 )

@@ -38,7 +38,7 @@ for which, (name, title, order) in enumerate((
     ("seepage.exit_gradient_at_a_sheet_pile", "Relative error of the exit gradient there",
      "as for the discharge; and the displacement by its thickness is weighed to first order only"),
 )):  # fmt: skip
-    LADDERS.ladder(name, title=title, along="particles over the depth", levels=(12, 20, 32), because=order)(
+    LADDERS.ladder(name, title=title, along="particles over the depth", levels=(12, 16, 24), because=order)(
         partial(pile_error, which, 0.5)
     )
 

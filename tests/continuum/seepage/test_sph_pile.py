@@ -5,6 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from continuum_sph.builders.parts.sheet_pile import NAME, beside, sheet_pile, steepness
+from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.sections import Scene
@@ -187,6 +188,17 @@ def test_a_run_beside_a_pile_goes_on_bit_for_bit():
         assert np.array_equal(one.x, other.x)
         assert np.array_equal(one.v, other.v)
     assert np.isnan(first.series()[NAME])  # two rows beside it
+
+
+def test_check_says_why_a_pile_has_no_exit_gradient_and_where_too_little_ground_lies_below_it():
+    def warnings(tip):
+        return " ".join(seepage_report(scene(pile={"x": 0.75, "tip": tip})).warnings)
+
+    assert "exit gradient () will be nan" in warnings(0.4)
+    assert "numerics.spacing = 0.05 mends it" in warnings(0.4)
+    assert "exit gradient" not in warnings(0.2)
+    assert "below the pile" not in warnings(0.2)
+    assert "below the pile" in warnings(0.1)
 
 
 def test_a_pile_stands_in_soil():
