@@ -81,8 +81,9 @@ def pile_report(scene: Scene, out: Report) -> None:
     out.row("rows of ground below it", tip / spacing, "", f"at least {LEAST_BELOW:g}")
     if not resolved(buried, spacing):
         out.warn(
-            f"the pile is {buried / spacing:.2g} rows deep in the ground: exit gradient () will be nan, as it is fit to "
-            f"what lies between the first row and the tip; numerics.spacing = {max(0.0, buried) / LEAST:.2g} mends it"
+            f"the pile is {buried / spacing:.2g} rows deep in the ground: exit gradient () will be nan, as it is fit "
+            "to what lies between the first row and the tip; "
+            f"numerics.spacing = {max(0.0, buried) / LEAST:.2g} mends it"
         )
     if tip < LEAST_BELOW * spacing:
         out.warn(
