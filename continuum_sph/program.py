@@ -37,7 +37,15 @@ def build(scene: Scene) -> Model:
 
 def drive(model: Model, folder: Path, scene: Scene, **options: Any) -> Outcome:
     """Run the model to the scene's end and write the run folder; options as of `Program`."""
-    return drive_scene(model, folder, scene, after=show, formerly=FORMERLY, **options)
+    from porescale.common.page.page import write_report
+
+    def after(finished: Path) -> None:
+        """Leave the pictures, and the page if it is wanted."""
+        show(finished)
+        if scene.output.report:
+            write_report(finished, PROGRAM)
+
+    return drive_scene(model, folder, scene, after=after, formerly=FORMERLY, **options)
 
 
 def report(scene: Scene) -> Report:

@@ -43,12 +43,15 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
     from porescale.analysis.bed_permeability import write_permeability
     from porescale.builders.cost import remember
     from porescale.common.api.run_scene import drive_scene
+    from porescale.common.page.page import write_report
     from porescale.common.record.open_run import open_run
 
     def after(finished: Path) -> None:
-        """Leave the pictures, and the permeability of the bed if there is one."""
+        """Leave the pictures, the permeability of the bed if there is one, and the page if it is wanted."""
         show(finished)
         write_permeability(open_run(finished), finished)
+        if scene.output.report:
+            write_report(finished, PROGRAM)
 
     packing = scene.grains.packing if scene.grains else None
     card = {**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}}

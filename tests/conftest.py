@@ -14,6 +14,8 @@ from hypothesis import settings
 
 from tests.compile_times import CompileTimes
 
+pytest_plugins = ["tests.browser"]
+
 # The same examples on every machine, however slow: a failure can be repeated, and a kernel may be compiled within one.
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")

@@ -9,6 +9,7 @@ import numpy as np
 
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.parts import mixture, soil, suction, water
+from continuum_sph.builders.parts.watched import WatchedPart
 from continuum_sph.builders.sanity import Now, advance_one
 from continuum_sph.scene.sections import Scene
 from porescale.common.api.fields import Field, scalars
@@ -28,12 +29,17 @@ P = TypeVar("P", bound=Part)
 
 
 def assemble(scene: Scene) -> Assembly:
-    """Water in a tank, soil in it, soil with water in its pores, or soil with suction."""
+    """Water in a tank, soil in it, soil with water in its pores, or soil with suction; what is watched of the soil."""
     if scene.soil is None:
         return water.assemble(scene)
     if scene.soil.suction is not None:
-        return suction.assemble(scene)
-    return soil.assemble(scene) if scene.dry else mixture.assemble(scene)
+        made = suction.assemble(scene)
+    else:
+        made = soil.assemble(scene) if scene.dry else mixture.assemble(scene)
+    if scene.soil.watch:
+        ground = next(part for part in made.parts if isinstance(part, soil.SoilPart))
+        made.parts.append(WatchedPart(scene, ground))
+    return made
 
 
 class Simulation(ShownSimulation):

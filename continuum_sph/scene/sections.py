@@ -97,6 +97,8 @@ class Scene(SceneBase):
             faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
         for index, section in enumerate(self.reservoir):
             faults += section.faults(f"reservoir[{index}]", *self.inner, spacing)
+        if self.soil is not None:
+            faults += self._wet_soil(self.soil)
         if self.pile is not None:
             faults += self.pile.faults(*self.inner, spacing)
             if self.soil is None:
@@ -143,6 +145,24 @@ class Scene(SceneBase):
         if faults:
             raise Refused(*faults)
         return self
+
+    def _wet_soil(self, soil: SoilSection) -> list[Fault]:
+        """Keys of the soil that need water, or exclude each other."""
+        faults = []
+        for key, there in (("held", soil.held), ("water_table", soil.water_table is not None)):
+            if there and self.dry:
+                faults.append(Fault(f"soil.{key}", there, "is of soil with water, of which there is none",
+                                    repair="add [[water.column]] or [[reservoir]]"))  # fmt: skip
+            if there and soil.suction is not None:
+                faults.append(Fault(f"soil.{key}", there, "cannot be with soil.suction", repair="take out one of them"))
+        for key, there in (("soil.saturated", soil.saturated), ("air", self.air is not None)):
+            if there and soil.water_table is not None:
+                faults.append(Fault("soil.water_table", soil.water_table, f"cannot be with {key}", "m",
+                                    repair="take out one of them"))  # fmt: skip
+        if soil.held and soil.watch:
+            faults.append(Fault("soil.watch", "given", "has no displacement in soil that is held",
+                                repair="take out soil.watch or soil.held"))  # fmt: skip
+        return faults
 
     def _misplaced(self) -> list[Fault]:
         """Discs of the second fluid not within water or not resolved, and choices that have no room for one."""

@@ -39,6 +39,12 @@ class Body(Section):
         return inside
 
 
+class Watch(Body):
+    """A part of the ground whose mean displacement is recorded: what lies within its outline at the start."""
+
+    name: str = pydantic.Field("", description="name in the columns (default: its number)")
+
+
 class SoilNumerics(Section):
     """Numerics that damp the noise of soil particles and keep them evenly spaced; see `continuum_sph.soil.momentum`.
 
@@ -101,11 +107,14 @@ class SoilSection(Section):
         default="constant", description="how permeability follows the porosity"
     )
     saturated: bool = pydantic.Field(False, description="pores are full at the start, up to the surface of the ground")
+    water_table: float | None = quantity("m", None, ge=0, le=1e5, help="height up to which pores are full at the start")
+    held: bool = pydantic.Field(False, description="does not move, whatever acts on it: only its water does")
     stress: Literal["geostatic", "none"] = pydantic.Field(default="geostatic", description="stress at the start")
     rest: float | None = quantity("", None, ge=0, le=5, help="K0 at the start")
     floor: Literal["hold", "slip"] = pydantic.Field(default="hold", description="whether the floor holds the soil")
     sides: Literal["hold", "slip"] = pydantic.Field(default="slip", description="whether the sides hold the soil")
     body: tuple[Body, ...] = pydantic.Field(min_length=1, description="pieces of ground")
+    watch: tuple[Watch, ...] = pydantic.Field(default=(), description="parts of it whose displacement is recorded")
     suction: SuctionSection | None = None
     numerics: SoilNumerics = SoilNumerics()
 
@@ -123,14 +132,17 @@ class SoilSection(Section):
     def faults(self, width: float, height: float, slack: float) -> list[Fault]:
         """What is wrong with the ground in a tank of ``width`` by ``height``, m."""
         found = []
-        for index, body in enumerate(self.body):
+        outlines: list[tuple[str, tuple[Body, ...]]] = [("body", self.body), ("watch", self.watch)]
+        for key, body in ((f"soil.{kind}[{k}].outline", it) for kind, of in outlines for k, it in enumerate(of)):
             if len(body.outline) < 3:
-                found.append(
-                    Fault(f"soil.body[{index}].outline", len(body.outline), "corners hold nothing", "", ">= 3")
-                )
+                found.append(Fault(key, len(body.outline), "corners hold nothing", "", ">= 3"))
             for x, y in body.outline:
                 if not (-slack <= x <= width + slack and -slack <= y <= height + slack):
-                    found.append(Fault(f"soil.body[{index}].outline", (x, y), "lies outside of the tank", "m"))
+                    found.append(Fault(key, (x, y), "lies outside of the tank", "m"))
+        names = [it.name or f"part {number}" for number, it in enumerate(self.watch)]
+        for number, name in enumerate(names):
+            if name in names[:number]:
+                found.append(Fault(f"soil.watch[{number}].name", name, "is that of another part", repair="rename it"))
         if self.dilatancy_angle > self.friction_angle:
             found.append(
                 Fault("soil.dilatancy_angle", self.dilatancy_angle, "makes soil that gives energy as it shears",

@@ -138,14 +138,26 @@ class PoreFlow(Flow):
     def saturation(self) -> Floats:
         """Share of the volume about each soil particle that water and its grains take up, (soil,): 1 where pores are
         full, less near walls and the surface of the water."""
+        return np.minimum(1.0, self._about(np.ones(self.layer.fluid)))
+
+    def pore_pressure(self) -> Floats:
+        """Mean pressure of the water about each soil particle, (soil,) Pa; no number where there is none."""
+        n = self.layer.fluid
+        with np.errstate(invalid="ignore"):
+            found: Floats = self._about(self.layer.pressure[:n]) / self._about(np.ones(n))
+        return found
+
+    def _about(self, values: Floats) -> Floats:
+        """Sums of ``values`` (fluid,) over the water about each soil particle by V W, (soil,); V is the whole volume,
+        grains included, m²."""
         start, partner, weight = self.overlap.rows
         n, count = self.layer.fluid, self.skeleton.count
         volume = self.layer.mass[:n] / (self.porosity * self.layer.density * self.room)
         volume[self.layer.material[:n] != 0] = 0.0  # air
+        volume *= values
         first, last = int(start[n]), int(start[n + count])
         row = np.repeat(np.arange(count), np.diff(start[n : n + count + 1]))
-        full = np.bincount(row, weight[first:last] * volume[partner[first:last]], count)
-        return np.minimum(1.0, full.astype(np.float64))
+        return np.bincount(row, weight[first:last] * volume[partner[first:last]], count).astype(np.float64)
 
     def state(self) -> dict[str, Any]:
         """Everything that later steps depend on."""

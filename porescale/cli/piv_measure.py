@@ -46,6 +46,12 @@ def measure(
     interval: Annotated[str | None, Parameter(help='time between two frames: "5 ms"; a film may say it itself')] = None,
     time_: Annotated[str | None, Parameter(name="--time", help="of frame 0, as the fields' times count from")] = None,
     overlay: Annotated[bool, Parameter(help="a film of the pictures with arrows on them, too")] = False,
+    review: Annotated[
+        bool, Parameter(help="a page with both pictures, to look at vectors and take wrong ones out", negative="")
+    ] = False,
+    reject: Annotated[
+        str | None, Parameter(help="bitmap that the page of --review saves: vectors at white pixels are wrong")
+    ] = None,
     threads: Threads = None,
     json: Json = False,
 ) -> int:
@@ -62,7 +68,7 @@ def measure(
             require_writable(path.parent, key)
     folder = (
         out
-        if out or ((csv or openpiv) and not overlay)
+        if out or ((csv or openpiv) and not (overlay or review))
         else Path("runs") / f"piv_{Path(films[0]).stem.strip('*?_ ') or 'film'}"
     )
     if folder is not None:
@@ -75,11 +81,14 @@ def measure(
     pixel, seconds = _scales(scale, interval, film.rate)
     shots = Shots(film, mask, tuple(polygon or ()), background)
     zero = 0.0 if time_ is None else quantity("--time", time_, "s")
-    measurement = Measurement(shots, settings, average, pixel, seconds, zero)
+    measurement = Measurement(shots, settings, average, pixel, seconds, zero, reject)
     fields = measurement.fields(say, _passes(measurement.pairs))
     found = write_fields(
-        measurement, _progress(fields, measurement.total), folder, csv=csv, openpiv=openpiv, overlay=overlay
+        measurement, _progress(fields, measurement.total), folder, csv=csv, openpiv=openpiv, overlay=overlay,
+        review=review,
     )  # fmt: skip
+    for doubt in found["doubts"]:
+        say(f"warning: {doubt}")
     _print(found, json)
     return 0
 

@@ -46,6 +46,8 @@ def measure(
     time: float | str = 0.0,
     out: Path_ | None = None,
     overlay: bool = False,
+    review: bool = False,
+    reject: Path_ | AnyArray | None = None,
 ) -> Field | list[Field]:
     """Displacements between pictures, with validity, correlation and uncertainty for every vector.
 
@@ -59,10 +61,12 @@ def measure(
     from all pairs of a steady flow;  start, end, step : which frames;  region : left, top, right, bottom px;  scale :
     length of a pixel (m or "0.1 mm"), with which the field is in m and m/s, y up;  interval : time between two frames
     (s or "5 ms"; a film may say it itself);  time : of frame 0;  out : folder for the files that `piv measure` writes;
-    overlay : a film with arrows among them.
+    overlay : a film with arrows among them;  review : a page among them to look at vectors and take wrong ones out;
+    reject : the bitmap that it saves, or an array, True where vectors are wrong.
 
     Two pictures, or all averaged, give a `Field`; a film of more gives a list of them, in time.  Pairs in a film that
-    show nothing give a PorescaleWarning and no valid vector.  Raises InputError for what cannot be read or measured.
+    show nothing give a PorescaleWarning and no valid vector; fewer than 70 % valid vectors give some too, with what to
+    try.  Raises InputError for what cannot be read or measured.
     """
     from porescale.piv.estimate.measure import Settings
     from porescale.piv.estimate.series import Shots
@@ -71,6 +75,8 @@ def measure(
     try:
         if out is not None and Path(out).is_file():
             raise InputError(Fault("out", str(out), "is a file", repair="name a folder"))
+        if review and out is None:
+            raise InputError(Fault("review", None, "has no folder to be written to", repair="give out"))
         if no_slip and mask is None and not polygon:
             raise InputError(Fault("no_slip", None, "there are no solids", repair="give mask or polygon"))
         if background not in ("none", "mean", "least"):
@@ -81,11 +87,11 @@ def measure(
         if pixel is not None and seconds is None:
             repair = 'give the time between frames: "5 ms"'
             raise InputError(Fault("interval", None, "is needed with scale", repair=repair))
-        solid = mask if mask is None or isinstance(mask, np.ndarray) else str(mask)
+        solid, gone = (it if it is None or isinstance(it, np.ndarray) else str(it) for it in (mask, reject))
         shots = Shots(frames, solid, tuple(polygon), background)
         settings = Settings(window=window, overlap=overlap, search=search, smooth=smooth, no_slip=no_slip)
         zero = _si("time", time, "s") or 0.0
-        work = Measurement(shots, settings, average, pixel, seconds, zero)
+        work = Measurement(shots, settings, average, pixel, seconds, zero, gone)
         fields: list[Field] = []
 
         def kept() -> Iterator[Field]:
@@ -95,7 +101,9 @@ def measure(
                 fields.append(replace(field, time=middle))
                 yield field
 
-        write_fields(work, kept(), None if out is None else Path(out), overlay=overlay)
+        written = write_fields(work, kept(), None if out is None else Path(out), overlay=overlay, review=review)
+        for doubt in written["doubts"]:
+            warnings.warn(_words(doubt), PorescaleWarning, stacklevel=2)
     except InputError as error:
         raise _in_python(error) from None
     return fields[0] if work.total == 1 else fields

@@ -24,3 +24,4 @@ class Output(Section):
         False, description="force and moment of grains on every wall, plate, rectangle and held disc: forces.csv"
     )
     energy: bool = pydantic.Field(False, description="energy budget of the grains, as columns of series.csv")
+    report: bool = pydantic.Field(True, description="a page of the run at its end, for browsers: report.html")

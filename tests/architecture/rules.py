@@ -29,8 +29,8 @@ PHYSICS = {
     "continuum_sph.unsaturated": ("continuum_sph.water", "continuum_sph.soil", "continuum_sph.seepage"),
 }
 """Folders of physics, and which lower ones each may import."""
-READS_RUNS = ("porescale.common.record", "porescale.common.pictures", "porescale.common.schema")
-"""What `porescale.piv` may import besides: it reads films and runs from disk and writes fields."""
+READS_RUNS = tuple(f"porescale.common.{it}" for it in ("record", "pictures", "schema", "page"))
+"""What `porescale.piv` may import besides: it reads films and runs from disk and writes fields and a page."""
 EVIDENCE = ("validation", "benchmarks")
 MAY_IMPORT_EVIDENCE = (*EVIDENCE, "cli")
 KERNEL_FOLDERS = (*BASE, *PHYSICS)

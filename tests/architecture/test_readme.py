@@ -204,7 +204,7 @@ def test_files_that_are_named_are_there() -> None:
 
 
 def test_a_file_that_is_gone_is_found() -> None:
-    assert missing_files("`porescale/lbm/fluid.py`, cases/rock, cases/NAME/NAME.py, `tests.reference.dem`") == []
+    assert missing_files("`porescale/lbm/fluid.py`, cases/rock, cases/NAME/NAME.py, `tests.reference.dem.dem`") == []
     assert missing_files("see porescale/gone.py and `porescale.lbm.gone`") == [
         "porescale/gone.py",
         "porescale.lbm.gone",

@@ -11,7 +11,7 @@ from porescale.coupling.coverage.rows import BLOCK
 from porescale.coupling.psm import BAND_HEIGHT, SaturatedCells
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from tests.reference import psm as twin
+from tests.reference.coupling import psm as twin
 
 EPS = np.finfo(float).eps
 

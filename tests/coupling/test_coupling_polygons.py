@@ -25,8 +25,8 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 from porescale.validation.coupling import polygons as outlines
 from porescale.validation.coupling import polygons_moving, setups
+from tests.reference.coupling.polygons import fractions_of
 from tests.reference.memory import growth
-from tests.reference.polygons import fractions_of
 
 EPS = np.finfo(float).eps
 WALLED = Fluid(64, 64, 0.8)

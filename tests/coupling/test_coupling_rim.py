@@ -16,7 +16,7 @@ from porescale.coupling.weighting.choose import choose_weight
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling.fast import STARTED, fast_starts, started
-from tests.reference.cylinder_start import CylinderStart
+from tests.reference.coupling.cylinder_start import CylinderStart
 
 VALIDATIONS = PACKAGE.validations()
 

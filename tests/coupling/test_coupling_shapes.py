@@ -10,7 +10,7 @@ from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling import rings as lab
-from tests.reference.shapes import POINTS, fractions
+from tests.reference.coupling.shapes import POINTS, fractions
 
 EPS = np.finfo(float).eps
 

@@ -14,8 +14,9 @@ from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.law import Macroscopic
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY
-from tests.reference import lbm, psm, soft_rim
-from tests.reference import solid_operators as solid
+from tests.reference.coupling import psm, soft_rim
+from tests.reference.coupling import solid_operators as solid
+from tests.reference.lbm import lbm
 
 EPS = np.finfo(float).eps
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")

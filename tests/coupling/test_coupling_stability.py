@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from porescale.benchmarks import stability_psm as stability
+from porescale.builders.checks.limits import SOUND_WARN
 from porescale.common.core.errors import Unstable
 from porescale.common.evidence.stability import STABLE, UNSTABLE, Row, holds_up_to
 from porescale.coupling import limits
@@ -67,6 +68,14 @@ def test_light_discs_hold_from_the_density_ratio_of_the_map_on(rows, law):
         assert not lighter or (cells, max(lighter)) in failed
     right = {row.y for row in fall if all(it.verdict != STABLE for it in fall if it.y == row.y)}
     assert min(right) == limits.CELLS_RIGHT[law]
+
+
+def test_check_warns_of_swings_from_where_the_map_is_no_longer_right(rows):
+    swung = [row for row in rows if (row.flow, row.law) == ("coupling.sound", "exact-wall wall")]
+    wrong = {row.x for row in swung if row.verdict == STABLE}
+    assert max(row.x for row in swung if row.x < min(wrong)) == SOUND_WARN
+    # The check that must fail: B1, whose walls stand up to half a cell in the fluid, is right at none of them.
+    assert all(row.error > 0.05 for row in rows if row.flow == "coupling.sound" and "B1" in row.law and row.x <= 1)
 
 
 def test_light_discs_between_the_sizes_of_the_map_count_as_the_smaller():

@@ -15,9 +15,9 @@ from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling import setups as lab
-from tests.reference import lbm as plain
 from tests.reference import memory
-from tests.reference import psm as twin
+from tests.reference.coupling import psm as twin
+from tests.reference.lbm import lbm as plain
 
 EPS = np.finfo(float).eps
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 from scipy.special import kve
 
-from tests.reference.cylinder_start import CylinderStart
+from tests.reference.coupling.cylinder_start import CylinderStart
 
 
 def unsteady_stokes_drag(reynolds, time):

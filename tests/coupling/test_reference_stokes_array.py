@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.reference.stokes_array import Array, hexagonal, periodic_point_forces, square
+from tests.reference.coupling.stokes_array import Array, hexagonal, periodic_point_forces, square
 
 PAIR = Array(np.array([[0.4, 0.45], [1.1, 0.6]]), np.array([0.25, 0.15]), length=1.5, height=1.0)
 

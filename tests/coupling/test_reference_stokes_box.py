@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.reference.stokes_box import Box, Enclosed, Vessel
+from tests.reference.coupling.stokes_box import Box, Enclosed, Vessel
 
 
 def test_concentric_cylinders_drag_and_turn_as_exactly_known():

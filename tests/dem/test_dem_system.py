@@ -14,8 +14,8 @@ from porescale.dem.measures import survey as measure
 from porescale.dem.motion import leapfrog as kick
 from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.timestep import packing_limit
-from tests.reference.dem import Body, World
-from tests.reference.restarted import differing, saved_on_the_way
+from tests.reference.dem.dem import Body, World
+from tests.reference.dem.restarted import differing, saved_on_the_way
 
 DENSITY = 2000.0
 LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)

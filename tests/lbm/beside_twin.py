@@ -4,7 +4,7 @@ import numpy as np
 
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY
-from tests.reference import lbm as twin
+from tests.reference.lbm import lbm as twin
 
 EPS = np.finfo(float).eps
 ORDER = [twin.C.index((int(cx), int(cy))) for cx, cy in zip(CX, CY, strict=True)]

@@ -8,7 +8,7 @@ import pytest
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from tests.lbm.beside_twin import ROUND_OFF, go, same, start
-from tests.reference import lbm as twin
+from tests.reference.lbm import lbm as twin
 
 EPS = np.finfo(float).eps
 LIDS = [("wall", "wall"), ("slip", "slip"), ("wall", "slip"), ("slip", "wall"), ("periodic", "periodic")]

@@ -9,8 +9,8 @@ from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import OPERATORS, choose
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY, OPPOSITE
-from tests.reference import lbm as twin
-from tests.reference import lbm_operators as dense
+from tests.reference.lbm import lbm as twin
+from tests.reference.lbm import lbm_operators as dense
 
 ORDER = [twin.C.index((int(cx), int(cy))) for cx, cy in zip(CX, CY, strict=True)]
 WEIGHTS = np.array(twin.W)[ORDER][:, None, None]

@@ -248,3 +248,50 @@ def test_the_bench_measures_pairs_of_its_sizes():
     for size in (SMALLEST - 1, LARGEST + 1):
         with pytest.raises(InputError, match="--size"):
             bench_piv(size, 1, "float64")
+
+
+NOISE = 0.05
+"""px: of a component, alike over some five grid steps, as windows that overlap make it."""
+
+
+def noisy(flow, seed, stated=NOISE, size=(384, 384)):
+    """A field of 8 px steps with correlated noise of NOISE px, and ``stated`` as its uncertainty."""
+    one = field(flow, size)
+    random = np.random.default_rng(seed)
+    off = [cv2.GaussianBlur(random.normal(size=one.u.shape), (0, 0), 2.0) for _ in range(2)]
+    u, v = (it + NOISE * noise / noise.std() for it, noise in zip((one.u, one.v), off, strict=True))
+    return replace(one, u=u, v=v, uncertainty=np.full(one.u.shape, stated))
+
+
+@pytest.mark.parametrize("name", ["still", "uniform", "shear", "stagnation"])
+def test_noise_has_no_vortex(name):
+    size = (384, 384)
+    flow = {
+        "still": flows.uniform(0.0, 0.0), "uniform": flows.uniform(2.0, 1.0), "shear": flows.shear(size, 1.0),
+        "stagnation": flows.stagnation(size, 1.0),
+    }[name]  # fmt: skip
+    assert [it for seed in range(10) for it in vortices(noisy(flow, seed))] == []
+
+
+@pytest.mark.parametrize("peak", [0.5, 4.0])
+def test_a_vortex_in_noise_is_one_vortex(peak):
+    # Speeds of ten and eighty uncertainties at the rim of the core.  Noise moves its centre by NOISE over its rate of
+    # turning, in the middle of a Lamb-Oseen vortex 1.4 times peak/radius: 2.9 px and 0.4 px, one deviation.
+    flow = flows.lamb_oseen((384, 384), peak, 40.0)
+    for seed in range(10):
+        (found,) = vortices(noisy(flow, seed))
+        assert np.hypot(found.x - 191.5, found.y - 191.5) < 2.0 + 3 * NOISE / (
+            1.4 * peak / 40.0
+        )  # 2: quarter of a step
+
+
+def test_noise_that_is_not_stated_is_full_of_vortices():  # the check that must fail
+    for flow in (flows.uniform(2.0, 1.0), flows.lamb_oseen((384, 384), 0.5, 40.0)):
+        assert len(vortices(noisy(flow, 0, stated=0.0))) > 3
+
+
+def test_a_vortex_of_replaced_vectors_is_a_guess():
+    one = noisy(flows.lamb_oseen((384, 384), 4.0, 40.0), 0)
+    lost = np.hypot(*np.meshgrid(one.x - 191.5, one.y - 191.5)) < 60
+    guessed = replace(one, valid=one.valid & ~lost, uncertainty=np.where(lost, np.inf, one.uncertainty))
+    assert vortices(guessed) == []

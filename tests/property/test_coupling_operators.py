@@ -20,7 +20,7 @@ from porescale.lbm.collision.law import Macroscopic
 from porescale.lbm.collision.trt import antisymmetric_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY, WEIGHTS
-from tests.reference import solid_operators as twin
+from tests.reference.coupling import solid_operators as twin
 
 EPS = np.finfo(float).eps
 N = 20

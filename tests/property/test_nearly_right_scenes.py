@@ -5,10 +5,10 @@ import sys
 import pytest
 
 from porescale.common.core.errors import Fault, InputError
-from tests.reference import nearly
+from tests.reference.faults import nearly
 
 COUNT = 60
-"""Mutants of the quick test, a few of each scene; python -m tests.reference.nearly does thousands."""
+"""Mutants of the quick test, a few of each scene; python -m tests.reference.faults.nearly does thousands."""
 
 
 @pytest.fixture(scope="module")

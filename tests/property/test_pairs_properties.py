@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from porescale.common.neighbors import PairList
-from tests.reference.pairs import neighbours, rows_of
+from tests.reference.dem.pairs import neighbours, rows_of
 
 lengths = st.floats(0.01, 1.0)
 coordinates = st.floats(-3.0, 3.0)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from porescale.common.core.errors import PorescaleError
-from tests.reference.failing_disk import Disk, calls, failing, whole
+from tests.reference.faults.failing_disk import Disk, calls, failing, whole
 from tests.reference.same_run import differences
 from tests.reference.toy_model import run_toy
 

@@ -16,7 +16,7 @@ KILLS = int(os.environ.get("PORESCALE_KILLS", "100"))
 
 def killed(place: Path, *words: object) -> int:
     """How many runs `killing_toy` killed in ``place``, all of which were whole and resumed to the same bits."""
-    ran = done([sys.executable, "-m", "tests.reference.killing_toy", place, *words], cwd=ROOT)
+    ran = done([sys.executable, "-m", "tests.reference.faults.killing_toy", place, *words], cwd=ROOT)
     assert ran.returncode == 0, ran.stderr
     return int(ran.stdout)
 

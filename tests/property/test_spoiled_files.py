@@ -28,9 +28,9 @@ from porescale.piv.fields.field import read as read_field
 from porescale.piv.images.film import open_film, picture
 from porescale.scene.circles import Circles
 from tests.reference import grounds
+from tests.reference.faults.spoiled import spoiled
 from tests.reference.folders import CASES
 from tests.reference.pictures import photograph
-from tests.reference.spoiled import spoiled
 from tests.reference.toy_model import run_toy
 
 TIMES = int(os.environ.get("PORESCALE_SPOILED", "25"))

@@ -14,9 +14,9 @@ import numpy as np
 
 from porescale.common.pictures.film import write_film
 from tests.reference import grounds
+from tests.reference.faults.spoiled import spoiled
 from tests.reference.folders import CASES, ROOT
 from tests.reference.pictures import photograph
-from tests.reference.spoiled import spoiled
 
 SAMPLES = {"porescale": "run_format_1", "continuum_sph": "continuum_run_format_1"}
 """Finished runs that are kept, by package."""

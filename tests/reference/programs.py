@@ -11,7 +11,7 @@ from continuum_sph.cli import PACKAGE as CONTINUUM
 from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.common.cli.application import application, main
 from porescale.common.compiled import jit
-from tests.reference.killing import SCENES
+from tests.reference.faults.killing import SCENES
 from tests.reference.scenes import write
 
 PACKAGES = {"porescale": PORESCALE, "continuum_sph": CONTINUUM}

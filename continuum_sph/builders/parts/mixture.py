@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.parts.air import AIR as GAS
 from continuum_sph.builders.parts.air import AirPart
+from continuum_sph.builders.parts.held_soil import HeldSoilPart
 from continuum_sph.builders.parts.instruments import MeasuredWater, discharge, level_row, probe_row
 from continuum_sph.builders.parts.phreatic import NAME, phreatic_row
 from continuum_sph.builders.parts.pore_water import seepage_flow
@@ -18,6 +19,8 @@ from continuum_sph.builders.parts.water import REPAIR, WaterPart
 from continuum_sph.builders.sanity import Now, require_finite, require_step
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Seepage
+from continuum_sph.seepage.skeleton import Frame
+from continuum_sph.seepage.step import Ground
 from continuum_sph.soil import SoilFlow
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
@@ -41,6 +44,7 @@ class WetSoilPart(SoilPart):
     """The soil, as of a tank without water, whose columns begin with "soil: "; `MixturePart` shows it."""
 
     key = "soil"
+    pressure = "mean_stress"  # what stands for it in a snapshot of both layers
 
     def row(self) -> dict[str, float]:
         """The columns of soil alone, with the prefix "soil: "."""
@@ -53,7 +57,7 @@ class WetSoilPart(SoilPart):
 class MixturePart(Part):
     """What water and soil of a ``flow`` have together."""
 
-    def __init__(self, flow: Seepage, water: PoreWaterPart, soil: WetSoilPart, *, air: bool) -> None:
+    def __init__(self, flow: Seepage, water: PoreWaterPart, soil: WetSoilPart | HeldSoilPart, *, air: bool) -> None:
         self.flow, self.water, self.soil, self.air = flow, water, soil, air
 
     def check(self) -> None:
@@ -110,7 +114,7 @@ class MixturePart(Part):
         parts = (
             ("layer", np.full(len(water.position), WATER), np.full(len(air.position), AIR), kind),
             *((key, water.data[key], air.data[key], soil.data[key]) for key in ("velocity", "porosity")),
-            ("pressure", water.data["pressure"], air.data["pressure"], soil.data["mean_stress"]),
+            ("pressure", water.data["pressure"], air.data["pressure"], soil.data[self.soil.pressure]),
         )
         data = {name: np.concatenate(values) for name, *values in parts}
         units = {"velocity": "m/s", "pressure": "Pa"}
@@ -123,7 +127,7 @@ class MixturePart(Part):
 
     def show(self, snapshot: Snapshot) -> None:
         """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
-        pressure (of soil mean effective stress), porosity."""
+        pressure (of soil mean effective stress, of soil that is held that of its water), porosity."""
         snapshot.clouds |= self._clouds()
 
     def state(self) -> dict[str, Any]:
@@ -175,6 +179,12 @@ class PoreInstruments(Part):
         return found
 
 
+def wet_soil(scene: Scene, ground: Ground) -> WetSoilPart:
+    """The soil that moves with its water."""
+    assert isinstance(ground, SoilFlow)
+    return WetSoilPart(scene, ground)
+
+
 def chosen(cloud: Cloud, rows: NDArray[np.int64]) -> Cloud:
     """The points of a cloud by their numbers, ``rows`` (m,)."""
     return Cloud(cloud.position[rows], {key: values[rows] for key, values in cloud.data.items()}, cloud.units)
@@ -183,8 +193,8 @@ def chosen(cloud: Cloud, rows: NDArray[np.int64]) -> Cloud:
 def assemble(scene: Scene) -> Assembly:
     """Soil with water in its pores, and all that a scene has besides."""
     both = seepage_flow(scene)
-    assert isinstance(both.ground, SoilFlow)
-    water, soil = PoreWaterPart(scene, both.water), WetSoilPart(scene, both.ground)
+    water = PoreWaterPart(scene, both.water)
+    soil = HeldSoilPart(scene, both.water) if isinstance(both.ground, Frame) else wet_soil(scene, both.ground)
     water.jumps.strips = [(it.left, it.right) for it in scene.reservoir]
     mixture = MixturePart(both, water, soil, air=scene.air is not None)
     parts: list[Part] = [water, soil, mixture]

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
+from continuum_sph.builders.parts.held_soil import held_ground
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
 from continuum_sph.builders.parts.soil import material_of, soil_flow, soil_section
@@ -14,6 +15,7 @@ from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleto
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.reservoir import BERTH, berths
 from continuum_sph.seepage.sheet_pile import CutPairList
+from continuum_sph.seepage.skeleton import Frame, Skeleton
 from continuum_sph.soil import SoilFlow
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.parameters import Law
@@ -46,6 +48,15 @@ def wet_height(scene: Scene, x: Floats) -> Floats:
     return found
 
 
+def wet_top(scene: Scene, x: Floats) -> Floats | None:
+    """Height (m) up to which pores over or under ``x`` (n, 2) m are full at the start, (n,); None without a table."""
+    section = soil_section(scene)
+    if not section.saturated and section.water_table is None:
+        return None
+    top: Floats = np.max([body.top(x[:, 0]) for body in section.body], axis=0)
+    return top if section.water_table is None else np.minimum(top, section.water_table)
+
+
 def submerge(scene: Scene, ground: SoilFlow) -> None:
     """Take the buoyancy of the grains off the stress of soil that is at rest under its dry weight."""
     section, soil = soil_section(scene), ground.soil
@@ -56,30 +67,45 @@ def submerge(scene: Scene, ground: SoilFlow) -> None:
     top = np.max([body.top(x[:, 0]) for body in section.body], axis=0)
     above = np.column_stack((x[:, 0], np.minimum(top, scene.inner[1])))
     wet = wet_height(scene, x) - wet_height(scene, above)
-    grains = top - x[:, 1] if section.saturated else wet  # of the soil above a particle, what is wet
+    table = wet_top(scene, x)
+    grains = wet if table is None else table - x[:, 1]  # of the soil above a particle, what is wet
+    if section.water_table is not None:
+        grains = np.maximum(wet, grains)
     lost = (1.0 - section.porosity) * scene.water.density * scene.gravity * np.maximum(grains, 0.0)
     upright = np.maximum(soil.stress[:n, 1], 1e-300)
     soil.stress[:n] *= (1.0 - np.minimum(1.0, lost / upright))[:, None]
 
 
-def saturate(scene: Scene, law: Law, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
-    """Places, velocities (n, 2) and densities (n,) of water with that in all pores of ``soil`` (s, 2) m that have none:
-    at rest, under the surface of the ground."""
+def saturate(scene: Scene, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
+    """Places, velocities (n, 2) and densities (n,) of water with that in pores of ``soil`` (s, 2) m that have none and
+    lie under the surface of the ground or the water table: at rest."""
     pores = dry_pores(scene.water.column, soil)
-    top = np.max([body.top(pores[:, 0]) for body in soil_section(scene).body], axis=0)
+    top = wet_top(scene, pores)
+    if top is None:
+        return x, v, rho
+    if soil_section(scene).water_table is not None:
+        under = pores[:, 1] < top
+        pores, top = pores[under], top[under]
     more = water_state(scene).settled_density(top - pores[:, 1], scene.gravity)
     return np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores))), np.concatenate((rho, more))
+
+
+def ground_of(scene: Scene) -> tuple[SoilFlow | Frame, Skeleton]:
+    """The soil of a scene, moving or held, and what its water needs of it."""
+    section = soil_section(scene)
+    if section.held:
+        frame = held_ground(scene)
+        return frame, frame.skeleton
+    ground = soil_flow(scene)
+    submerge(scene, ground)
+    return ground, skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
 
 
 def seepage_flow(scene: Scene) -> Seepage:
     """Soil and water of a scene, ready for their first step."""
     section, law, spacing = soil_section(scene), pore_law(scene), scene.numerics.spacing
-    ground = soil_flow(scene)
-    submerge(scene, ground)
-    skeleton = skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
-    x, v, rho = water_particles(scene, law)
-    if section.saturated:
-        x, v, rho = saturate(scene, law, ground.soil.x[: ground.soil.soil], x, v, rho)
+    ground, skeleton = ground_of(scene)
+    x, v, rho = saturate(scene, skeleton.x, *water_particles(scene, law))
     pile = sheet_pile(scene.pile, spacing) if scene.pile else None
     if pile:
         skeleton.foot = pile.foot(ground_at(section, pile.x))
@@ -88,7 +114,7 @@ def seepage_flow(scene: Scene) -> Seepage:
     margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length
     wet = len(x)
     if scene.air:
-        pores = dry_pores(scene.water.column, ground.soil.x[: ground.soil.soil])
+        pores = dry_pores(scene.water.column, skeleton.x)
         x, v = np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores)))
         rho = np.concatenate((rho, np.full(len(pores), scene.air.density)))
     present, top = len(x), height + margin
@@ -121,7 +147,8 @@ def seepage_flow(scene: Scene) -> Seepage:
         flow.specific_weight = specific_weights(layer.material[: len(x)], law, flow.resistance.gravity)
     flow.lower[:] = 0.0
     flow.upper[:] = width, height if scene.tank.lid and not waiting else np.inf
-    both = Seepage(flow, ground, largest_modulus(scene), section.porosity * scene.water.density + section.density)
+    weight = section.porosity * scene.water.density + section.density if not section.held else np.inf
+    both = Seepage(flow, ground, largest_modulus(scene), weight)
     both.start()
     layer.mass[:present] = (flow.porosity * rho * area)[:present]
     if waiting:

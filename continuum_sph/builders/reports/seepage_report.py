@@ -5,7 +5,7 @@ from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law
 from continuum_sph.builders.parts.sheet_pile import LEAST, ground_at, resolved, sheet_pile
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.water import water_state
-from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin
+from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
 from continuum_sph.builders.reports.water_report import water_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
@@ -30,31 +30,21 @@ def seepage_report(scene: Scene) -> Report:
         least = f">= {LEAST_POROSITY:g} with water"
         raise InputError(Fault("soil.porosity", section.porosity, "leaves water no room", "", least, "raise it"))
     out = water_report(scene)
-    law, state, modulus = pore_law(scene), water_state(scene), largest_modulus(scene)
+    law, state = pore_law(scene), water_state(scene)
     soil, _ = soil_particles(scene)
     out.heading("soil")
+    report_watched(scene, out)
     out.row("soil particles", len(soil))
-    out.row("modulus of a column at the floor", modulus, "Pa")
-    out.row("longest step for its sound", min(soil_law(scene).limits(0.0, (modulus / section.density) ** 0.5
-            / law.smoothing.length, float("inf"))), "s")  # fmt: skip
     out.heading("soil and water")
-    porosity, density, gravity = section.porosity, scene.water.density, scene.gravity
     stiff = state.density * state.sound_speed**2
-    ratio = stiff / (porosity * modulus)
-    whole = porosity * density + section.density
-    out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
-    out.row("critical gradient", (section.density / density - (1.0 - porosity)), "", "(G_s - 1)(1 - n)")
-    if gravity > 0.0:
-        drag = section.permeability / (porosity * gravity)
+    step = law.limits(0.0, 0.0)[0]  # of air beside water
+    if scene.gravity > 0.0:
+        drag = section.permeability / (section.porosity * scene.gravity)
         out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
-        spread = section.permeability * modulus / (density * gravity)
-        out.row("consolidation coefficient", spread, "m2/s")
-        out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
+    if not section.held:
+        step = min(step, moving(scene, out, stiff))
     if scene.air:
         air_report(out, scene, law, len(dry_pores(scene.water.column, soil)))
-    step = SHARE * law.smoothing.length / ((modulus + stiff / porosity) / whole) ** 0.5
-    out.row("longest step for sound in both together", step, "s")
-    step = min(step, law.limits(0.0, 0.0)[0])  # of air beside water
     out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
     report_output(out, scene.time.end, scene.output, round(scene.time.end / step), 1000.0 + 2.0 * SNAPSHOT * len(soil))
     report_origin(out, section.origin)
@@ -62,13 +52,32 @@ def seepage_report(scene: Scene) -> Report:
         pile_report(scene, out)
     if scene.reservoir:
         levels(scene, out)
+    return out
+
+
+def moving(scene: Scene, out: Report, stiff: float) -> float:
+    """Rows on soil that moves with water of a stiffness ρ c² (Pa), ``stiff``; the longest step (s) for their sound."""
+    section, h = soil_section(scene), pore_law(scene).smoothing.length
+    porosity, density, gravity, modulus = section.porosity, scene.water.density, scene.gravity, largest_modulus(scene)
+    sound = (modulus / section.density) ** 0.5
+    ratio, whole = stiff / (porosity * modulus), porosity * density + section.density
+    out.row("modulus of a column at the floor", modulus, "Pa")
+    out.row("longest step for its sound", min(soil_law(scene).limits(0.0, sound / h, float("inf"))), "s")
+    out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
+    out.row("critical gradient", (section.density / density - (1.0 - porosity)), "", "(G_s - 1)(1 - n)")
+    if gravity > 0.0:
+        spread = section.permeability * modulus / (density * gravity)
+        out.row("consolidation coefficient", spread, "m2/s")
+        out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
+    step = float(SHARE * h / ((modulus + stiff / porosity) / whole) ** 0.5)
+    out.row("longest step for sound in both together", step, "s")
     if ratio < STIFF:
         speed = (STIFF * porosity * modulus / density) ** 0.5
         out.warn(
             f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.2g} %; "
             f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
         )
-    return out
+    return step
 
 
 def pile_report(scene: Scene, out: Report) -> None:

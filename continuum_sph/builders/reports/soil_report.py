@@ -3,6 +3,7 @@
 import math
 
 from continuum_sph.builders.parts.soil import material_of, soil_law, soil_particles, soil_section
+from continuum_sph.builders.parts.watched import watched_rows
 from continuum_sph.scene.material_file import Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.soil.parameters import RULES
@@ -24,6 +25,7 @@ def soil_report(scene: Scene) -> Report:
     out.heading("resolution")
     out.row("soil particles", count)
     out.row("particles in the soil's height", section.height / spacing)
+    report_watched(scene, out)
     out.row("smoothing length", law.smoothing.length, "m", law.smoothing.name)
     out.heading("stiffness")
     pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
@@ -70,3 +72,9 @@ def report_origin(out: Report, origin: Origin | None) -> None:
     for key in ("command", "version", "lambda", "cells", "pressure"):
         if isinstance(value := origin.made.get(key), str | int | float):
             out.row(key, value)
+
+
+def report_watched(scene: Scene, out: Report) -> None:
+    """Add to a report how many particles each watched part of a scene's soil has; InputError if one has none."""
+    for name, rows in watched_rows(scene).items():
+        out.row(f"particles of {name}", len(rows))

@@ -203,7 +203,8 @@ def heave_row() -> Measured:
 
 
 NARROW = {0.25: (2.83, 3.15), 0.5: (2.86, 3.19), 0.75: (3.05, 3.46)}
-"""The same bounds in ground that ends 1 T beside the pile, by finite volumes: `tests/reference/sheet_pile.py`."""
+"""The same bounds in ground that ends 1 T beside the pile, by finite volumes:
+`tests/reference/continuum/sheet_pile.py`."""
 
 APART = {share: high / low - 1.0 for share, (low, high) in NARROW.items()}
 """How far ground may rise, over s, and its head still part one bound from the other: ground that has risen by δ s is

@@ -16,7 +16,8 @@ MACH_WARN, MACH_REFUSE = 0.1, limits.MACH
 CELLS_THICK = 2.0
 """A rectangle thinner than this may fill no cell wholly, wherever it lies, and lets fluid through."""
 SOUND_WARN = 0.3
-"""Angle of an oscillation in which sound crosses the box, rad: it changes pressures by its square, a tenth."""
+"""Angle of an oscillation in which sound crosses the box, rad: it changes pressures by its square, a tenth.  In the map
+(coupling.sound) damping is right up to it with 5 cells per diameter and more."""
 RING_CELLS = 4.0
 """Fewest cells across the hole of a ring."""
 SINGLE_PRECISION = 1e-5

@@ -14,6 +14,7 @@ from porescale.common.cli import bench, cases, check, completion, measure, new, 
 from porescale.common.cli.diagnostics import printed
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import InputError, PorescaleError
+from porescale.common.page import command as report
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
@@ -39,7 +40,7 @@ def application(package: Package) -> App:
         print_error=False,
         exit_on_error=False,
     )
-    for part in (run, check, show, measure, new, schema, cases, sweep, verify, bench, study):
+    for part in (run, check, show, report, measure, new, schema, cases, sweep, verify, bench, study):
         app.command(part.command(package))
     app.command(completion.command(app), name="--install-completion")
     return app

@@ -100,7 +100,10 @@ def _stability(package: Package) -> Callable[..., int]:
         threads: Threads = 1,
         json: Json = False,
     ) -> int:
-        """Map where each law stays stable and where it is right, over flows that go from mild to extreme."""
+        """Map where each law stays stable and where it is right, over flows that go from mild to extreme.
+
+        A map that the folder holds keeps its other flows.
+        """
         from porescale.common.evidence import stability_files as study
 
         assert package.stability is not None
@@ -120,8 +123,11 @@ def _stability(package: Package) -> Callable[..., int]:
                 spent = time.perf_counter() - start
                 left = f"{done} of {total}, about {spent / done * (total - done):.0f} s left"
                 say(f"{flow.name}: {law} ({left})")
-        words = _command_line(package, "stability", names, *(["--quick"] if quick else []))
-        study.write(folder, words, package.version, flows, rows, quick)
+        others = [flow for flow in package.stability() if flow not in flows]
+        kept = study.stored(folder, others, quick)
+        shown = [flow for flow in package.stability() if flow.name in {row.flow for row in kept + rows}]
+        words = _command_line(package, "stability", () if kept else names, *(["--quick"] if quick else []))
+        study.write(folder, words, package.version, shown, kept + rows, quick)
         if json:
             print_json(row.as_dict() for row in rows)
         else:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,7 @@ COLOURS = {RIGHT: "#2c7fb8", STABLE: "#fec44f", UNSTABLE: "#a50f15"}
 
 def write(folder: Path, command: str, version: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> None:
     """Write the four files into ``folder``, which is made if it is not there."""
+    rows = [row for flow in flows for row in rows if row.flow == flow.name]
     about = {"command": command, "version": version, "quick": quick, "flows": [as_dict(it, quick) for it in flows]}
     files.write_study(
         folder,
@@ -32,6 +34,23 @@ def write(folder: Path, command: str, version: str, flows: Sequence[Flow], rows:
         md=markdown(command, flows, rows, quick),
         png=picture(flows, rows, quick),
     )
+
+
+def stored(folder: Path, flows: Iterable[Flow], quick: bool) -> list[Row]:
+    """Rows of a map that ``folder`` holds already, of those ``flows`` whose laws and values are still the same."""
+    file = folder / f"{NAME}.json"
+    if not file.is_file():
+        return []
+    rows = [
+        Row(**row | {"numbers": {name: math.nan if it is None else it for name, it in row["numbers"].items()}})
+        for row in json.loads(file.read_text())["rows"]
+    ]
+    found: list[Row] = []
+    for flow in flows:
+        mine = [row for row in rows if row.flow == flow.name]
+        wanted = {(law, x, y) for law in flow.laws(quick) for x in flow.x.chosen(quick) for y in flow.y.chosen(quick)}
+        found += mine if {(row.law, row.x, row.y) for row in mine} == wanted else []
+    return found
 
 
 def as_dict(flow: Flow, quick: bool) -> dict[str, Any]:

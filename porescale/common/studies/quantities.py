@@ -2,11 +2,11 @@
 
 A row names a ``column`` (with its unit) and where to read it:
 
-at : "end", "max", "min", a time in s (interpolated), or a table with first_below or last_above and a value: the
-    time in s at which the column falls to it for the first time, or is above it for the last; as a share of where it
-    goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value); with quantile, what
-    that share of the rows does not exceed; with mean_from, max_from, rms_from, period_from the mean, the largest value,
-    the rms about the mean, the mean period (s) about the mean from a time on.
+at : "end", "max", "min", a time in s (interpolated), or a table with first_below, first_above or last_above and a
+    value: the time in s at which the column falls or rises to it for the first time, or is above it for the last; as
+    a share of where it goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value);
+    with quantile, what that share of the rows does not exceed; with mean_from, max_from, rms_from, period_from the
+    mean, the largest value, the rms about the mean, the mean period (s) about the mean from a time on.
 minus : another column to take away;  where : {column: value} of the rows to look at, at the table's last time.
 """
 
@@ -71,6 +71,8 @@ def _found(time: NDArray[Any], values: NDArray[Any], at: Mapping[str, Any]) -> f
         raise ValueError(f"share_of = {share!r} is neither fall nor peak")
     if "first_below" in at:
         return float(min(time[values <= at["first_below"]], default=np.inf))
+    if "first_above" in at:
+        return float(min(time[values >= at["first_above"]], default=np.inf))
     if "last_above" in at:
         return float(time[np.flatnonzero(values > at["last_above"])[-1]])
     raise ValueError(f"at = {dict(at)!r} holds no known key")

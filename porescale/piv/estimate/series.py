@@ -134,8 +134,8 @@ def corner(film: Film) -> tuple[int, int]:
     return (film.region[0], film.region[1]) if film.region else (0, 0)
 
 
-def whole_rows(film: Film) -> int:
-    """Rows of the whole picture, region or not."""
+def whole_size(film: Film) -> tuple[int, int]:
+    """Rows and columns of the whole picture, region or not."""
     for frame in replace(film, region=None):
-        return int(frame.shape[0])
+        return int(frame.shape[0]), int(frame.shape[1])
     raise InputError(Fault("film", None, "no frames chosen", repair="widen --start, --end"))

@@ -118,6 +118,20 @@ def in_metres(field: Field, rows: int, scale: float, interval: float) -> Field:
     )  # fmt: skip
 
 
+def on_picture(field: Field, rows: int, scale: float, interval: float, corner: tuple[int, int] = (0, 0)) -> Field:
+    """A field as it lies on the pictures of its region, in pixels: the inverse of ``in_pixels`` and ``in_metres``.
+
+    Places are rounded to a millionth of a pixel, so that whole ones are whole again.
+    """
+    if field.upwards:
+        speed = scale / interval
+        field = replace(
+            field, x=field.x / scale - 0.5, y=rows - 0.5 - field.y / scale, u=field.u / speed, v=-field.v / speed,
+            uncertainty=field.uncertainty / speed, upwards=False,
+        )  # fmt: skip
+    return replace(field, x=np.round(field.x - corner[0], 6), y=np.round(field.y - corner[1], 6))
+
+
 def write_csv(field: Field, path: Path) -> None:
     """Every grid point, a row each, with the columns of COLUMNS; flags 0 or 1."""
     text = io.StringIO()

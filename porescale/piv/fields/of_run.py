@@ -69,7 +69,8 @@ def _field(grid: Grid) -> Field:
     u, v = np.asarray(velocity[..., 0], float), sign * np.asarray(velocity[..., 1], float)
     valid = np.asarray(cells["valid"] > 0) if "valid" in cells else ~solid
     none = np.full((ny, nx), np.nan)
+    spread = np.where(valid, cells["uncertainty"], np.inf) if "uncertainty" in cells else none
     return Field(
         x, y, np.where(solid, np.nan, u), np.where(solid, np.nan, v), valid, ~valid & ~solid, solid,
-        cells.get("correlation", none), cells.get("uncertainty", none), upwards=up,
+        cells.get("correlation", none), spread, upwards=up,
     )  # fmt: skip

@@ -2,7 +2,8 @@
 
 Gamma 1 at P is the mean of sin(PM, U_M) over the neighbours M: 1 at the centre of an axisymmetric vortex.  Gamma 2 is
 the same less the neighbours' mean velocity, which it does not see; its size exceeds 2/pi where rotation outweighs
-strain (Graftieaux, Michard & Grosjean 2001, Meas. Sci. Technol. 12, 1422).
+strain (Graftieaux, Michard & Grosjean 2001, Meas. Sci. Technol. 12, 1422).  Both are angles alone, so that noise in a
+uniform flow has cores as large as those of vortices: a core counts where it turns faster than errors do.
 """
 
 from collections.abc import Sequence
@@ -12,7 +13,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from porescale.common.core.types import Floats
+from porescale.common.core.types import Flags, Floats
 from porescale.piv.fields.field import Field
 
 CORE = 2 / np.pi
@@ -23,6 +24,12 @@ CENTRE = 0.8
 """|Gamma 2| that a core must reach: 1 in the middle of a vortex, 2/pi all over a layer of pure shear."""
 WEAK = 0.02
 """Share of the strongest circulation below which a vortex is left out."""
+EXCEEDS = 4.0
+"""Uncertainties of a component by which a core's rim must turn, beyond what strain alone would make of it.  Errors of
+all of a core together turn it by one at most; of a thousand places the largest of normal numbers is 3.2.
+"""
+ROUND_OFF = 16 * float(np.finfo(np.float32).eps)
+"""Error of a component over the largest speed, at least: files of runs hold single precision."""
 LEAST = 5
 """Grid points of a core, at least: fewer may be an outlier with its neighbours."""
 
@@ -80,10 +87,16 @@ def gammas(field: Field, reach: int = REACH) -> tuple[Floats, Floats]:
 
 
 def vortices(field: Field, reach: int = REACH) -> list[Vortex]:
-    """Vortices by falling strength: connected cores of |Gamma 2| > 2/pi, centred where |Gamma 1| is largest in them."""
+    """Vortices by falling strength: connected cores of |Gamma 2| > 2/pi, centred where |Gamma 1| is largest in them.
+
+    Only such as exceed the vectors' uncertainty, EXCEEDS times; where none is stated, ROUND_OFF.
+    """
+    if min(field.u.shape) < 2:
+        return []
     one, two = gammas(field, reach)
     turning = np.nan_to_num(field.vorticity())
-    area = abs((field.x[1] - field.x[0]) * (field.y[1] - field.y[0])) if min(two.shape) > 1 else 0.0
+    area = abs((field.x[1] - field.x[0]) * (field.y[1] - field.y[0]))
+    slopes = [np.gradient(it, along, axis=k) for it in (field.u, field.v) for k, along in ((1, field.x), (0, field.y))]
     found = []
     for sign in (1, -1):
         core = (sign * two > CORE) & ~field.solid
@@ -94,11 +107,31 @@ def vortices(field: Field, reach: int = REACH) -> list[Vortex]:
                 continue
             x, y = _centre(field, np.where(inside, sign * one, 0.0))
             strength = float(turning[inside].sum()) * area
-            if strength * sign > 0:
-                size = float(np.sqrt(inside.sum() * area / np.pi))
+            size = float(np.sqrt(inside.sum() * area / np.pi))
+            if strength * sign > 0 and _excess(slopes, inside) * size > EXCEEDS * _error(field, inside):
                 found.append(Vortex(x, y, strength, size, float((sign * one)[inside].max())))
     found.sort(key=lambda it: -abs(it.circulation))
     return [it for it in found if abs(it.circulation) >= WEAK * abs(found[0].circulation)]
+
+
+def _excess(slopes: Sequence[Floats], inside: Flags) -> float:
+    """Rate at which a core turns less that at which it is strained, of its mean velocity gradient: 0 in pure shear.
+
+    slopes : du/dx, du/dy, dv/dx, dv/dy (ny, nx), nan beside solids.
+    """
+    if not np.isfinite(slopes[0][inside]).any():
+        return 0.0
+    ux, uy, vx, vy = (float(np.nanmean(it[inside])) for it in slopes)
+    return abs(vx - uy) / 2 - float(np.hypot(ux - vy, uy + vx)) / 2
+
+
+def _error(field: Field, inside: Flags) -> float:
+    """Error of a component in a core: the rms of its valid vectors' uncertainty; infinite where most are replaced."""
+    least = ROUND_OFF * float(np.nanmax(np.hypot(field.u, field.v)))
+    if not np.isfinite(field.uncertainty).any():
+        return least
+    known = field.uncertainty[inside & field.valid & np.isfinite(field.uncertainty)]
+    return max(least, float(np.sqrt(np.mean(known**2)))) if 2 * known.size > inside.sum() else np.inf
 
 
 def _centre(field: Field, height: Floats) -> tuple[float, float]:

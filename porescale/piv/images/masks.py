@@ -13,6 +13,8 @@ from porescale.common.core.types import Flags
 from porescale.piv.images.film import Film, Picture, open_film, picture
 from porescale.piv.images.stacks import is_stack
 
+SEGMENTS = ("bright", "dark")
+"""Words in a mask's place: segment every frame."""
 GREY = 0.5
 """Share of white from which a pixel is solid."""
 
@@ -59,7 +61,7 @@ def masks(source: str | Flags | None, corners: list[str], film: Film) -> Iterato
     """
     for frame, found in zip(film, _sources(source, film), strict=False):
         mask = found
-        if isinstance(source, str) and source in ("bright", "dark"):
+        if isinstance(source, str) and source in SEGMENTS:
             mask = segmented(frame, bright=source == "bright")
         for text in corners:
             left, top = film.region[:2] if film.region else (0, 0)
@@ -79,7 +81,7 @@ def _sources(source: str | Flags | None, film: Film) -> Iterator[Flags | None]:
     if isinstance(source, np.ndarray):
         yield from repeat(_cut(source.astype(bool), film))
         return
-    if source is None or source in ("bright", "dark"):
+    if source is None or source in SEGMENTS:
         yield from repeat(None)
         return
     path = Path(source)

@@ -2,12 +2,14 @@
 
 import csv
 import json
+import math
+from dataclasses import replace
 
 import pytest
 
 from porescale.common.core.errors import InputError
 from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Axis, Row, Stability, Tried, holds_up_to
-from porescale.common.evidence.stability_files import csv_text, markdown, write
+from porescale.common.evidence.stability_files import csv_text, markdown, stored, write
 
 X = Axis("strain", (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0), (1.0, 64.0))
 Y = Axis("heat", (0.1, 0.2), (0.1,))
@@ -104,3 +106,15 @@ def test_the_files_say_the_same_thing(tmp_path):
     assert csv_text(rows).count("\n") == len(rows) + 1
     assert markdown("again", flows, rows, False).splitlines()[4:] == text.splitlines()[4:]
     assert {row.verdict for row in rows} == {RIGHT, STABLE, UNSTABLE}
+
+
+def test_a_map_keeps_the_flows_that_are_as_they_were(tmp_path):
+    flows = register().chosen()
+    rows = [row for law in BREAKS for y in Y.values for row in flows[0].run(law, y, False)]
+    rows[0] = replace(rows[0], numbers={"strain": math.nan})
+    write(tmp_path, "toy study stability", "1", flows, rows, quick=False)
+    kept = stored(tmp_path, flows, False)
+    assert [row.as_dict() for row in kept[1:]] == [row.as_dict() for row in rows[1:]]
+    assert csv_text(kept) == csv_text(rows)
+    assert stored(tmp_path / "none", flows, False) == []
+    assert stored(tmp_path, flows, True) == []  # the check that must fail: other values are another map

@@ -9,7 +9,7 @@ from porescale.common.neighbors import PairList, search
 from porescale.common.neighbors import pair_list as pairs
 from porescale.common.neighbors import skin as skins
 from porescale.common.neighbors.cells import Grid
-from tests.reference.pairs import neighbours, rows_of
+from tests.reference.dem.pairs import neighbours, rows_of
 
 LOWER, UPPER = (0.0, -1.0), (10.0, 7.0)
 OLDER = ("start", "partner", "carried", "anchor", "anchor_reach", "builds")

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from porescale.common.neighbors import PairList, search
 from porescale.common.neighbors import pair_list as pairs
 from porescale.common.neighbors.cells import minimum_image, tilted_image, untilted
-from tests.reference.dem_bodies import tilted_neighbours
-from tests.reference.pairs import rows_of
+from tests.reference.dem.dem_bodies import tilted_neighbours
+from tests.reference.dem.pairs import rows_of
 
 
 def listed_in(x, reach, skin, width, height, tilt):

@@ -6,7 +6,7 @@ import pytest
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import place, square_lattice, triangular_lattice
 from porescale.common.neighbors.placement import glide, repel
-from tests.reference.pairs import nearest_image
+from tests.reference.dem.pairs import nearest_image
 
 
 def smallest_gap(position, radius, size, periodic):

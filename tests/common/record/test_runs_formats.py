@@ -24,8 +24,8 @@ from porescale.common.record.checkpoint import read_checkpoint, read_header
 from porescale.common.record.open_run import open_run
 from porescale.common.record.read_card import read_card
 from porescale.common.schema.sections import Section, load, scene_as_dict, validate
+from tests.reference.faults.spoiled import renumbered
 from tests.reference.folders import SAMPLES
-from tests.reference.spoiled import renumbered
 from tests.reference.toy_model import run_toy
 
 

@@ -13,7 +13,7 @@ from porescale.common.record.checkpoint import read_checkpoint
 from porescale.common.record.open_run import open_run
 from porescale.common.record.record import Gone
 from porescale.common.record.stop import Interrupted
-from tests.reference.failing_disk import Disk, failing, whole
+from tests.reference.faults.failing_disk import Disk, failing, whole
 from tests.reference.same_run import differences
 from tests.reference.toy_model import Toy, run_toy
 from tests.reference.waiting import awaited

@@ -16,8 +16,8 @@ from porescale.common.core.errors import InputError, Unstable
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 from porescale.common.record.model import Model
 from porescale.common.schema.sections import validate
+from tests.reference.continuum.uncompiled import WATER, uncompile
 from tests.reference.memory import growth
-from tests.reference.uncompiled import WATER, uncompile
 
 
 def scene(**numerics):

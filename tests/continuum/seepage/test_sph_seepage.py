@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from reference import seepage as slow
 
 from continuum_sph.seepage import Frame, Resistance, exchange, mixture
 from continuum_sph.seepage import overlap as overlaps
@@ -30,6 +29,7 @@ from continuum_sph.water.bundles import Neighbours
 from continuum_sph.water.smoothing import WENDLAND, kernel_value
 from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
 from porescale.common.compiled.simd import LANES
+from tests.reference.continuum import seepage as slow
 
 eps = np.finfo(float).eps
 H, GRAVITY, POROUS = 0.13, 9.81, 0.4

@@ -32,8 +32,8 @@ from porescale.common.neighbors import square_lattice
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 from porescale.common.record.model import Model
 from porescale.common.schema.sections import validate
+from tests.reference.continuum.uncompiled import uncompile
 from tests.reference.memory import growth
-from tests.reference.uncompiled import uncompile
 
 ELASTIC = Material(1e7, 1600.0, yields=False)
 SAND = Material(1e6, 1600.0)

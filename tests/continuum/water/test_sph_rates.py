@@ -14,8 +14,8 @@ from continuum_sph.water.density import LINEAR, PLAIN
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from porescale.common.schema.sections import validate
-from tests.reference.sph_rates import pair_sums
-from tests.reference.uncompiled import WATER, uncompile
+from tests.reference.continuum.sph_rates import pair_sums
+from tests.reference.continuum.uncompiled import WATER, uncompile
 
 eps = np.finfo(float).eps
 HALF = 1e-3  # s

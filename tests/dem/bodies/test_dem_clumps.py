@@ -14,11 +14,11 @@ from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.prepare.merge import joined
-from tests.reference import dem_bodies
-from tests.reference.dem import Body as Disc
-from tests.reference.dem import World
+from tests.reference.dem import dem_bodies
+from tests.reference.dem.dem import Body as Disc
+from tests.reference.dem.dem import World
+from tests.reference.dem.restarted import OF_LAST_CALL, differing, saved_on_the_way
 from tests.reference.memory import peak
-from tests.reference.restarted import OF_LAST_CALL, differing, saved_on_the_way
 
 LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)
 DENSITY = 2000.0

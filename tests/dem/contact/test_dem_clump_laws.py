@@ -19,7 +19,7 @@ from porescale.dem.measures.loads import on_surface
 from porescale.dem.prepare.settle import come_to_rest, weights_of
 from porescale.validation.dem.bodies import clumped_cloud
 from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS
-from tests.reference.pairs import neighbours, rows_of
+from tests.reference.dem.pairs import neighbours, rows_of
 
 SOFT = Hertz(1e8, 0.8e8, damping_ratio=0.2155)
 

@@ -15,8 +15,8 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.timestep import packing_limit
-from tests.reference.dem_contact import HertzContact
-from tests.reference.restarted import differing
+from tests.reference.dem.dem_contact import HertzContact
+from tests.reference.dem.restarted import differing
 
 STEEL = Linear(2e6, 10.0, 5e5, 3.0, 0.5, rolling_friction=0.1, rolling_stiffness=1e5)
 RUBBER = Linear(2e5, 40.0, 5e4, 1.0, 0.8, rolling_friction=0.3, rolling_stiffness=2e4)

@@ -23,9 +23,9 @@ from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.motion.periodic_cell import Still
 from porescale.validation.dem.segments import mixed_cloud, regular
-from tests.reference import dem_segments as slow
+from tests.reference.dem import dem_segments as slow
+from tests.reference.dem.restarted import OF_LAST_CALL, differing, saved_on_the_way
 from tests.reference.memory import peak
-from tests.reference.restarted import OF_LAST_CALL, differing, saved_on_the_way
 
 K = 1e6
 LAW = Linear(K)

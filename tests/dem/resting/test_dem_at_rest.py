@@ -14,7 +14,7 @@ from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.resting.static import bear, clear, resting, unchanged
 from porescale.dem.state import StaticState
 from porescale.validation.coupling import setups as lab
-from tests.reference.restarted import differing
+from tests.reference.dem.restarted import differing
 
 LAW = Linear(1e4, 1.0, 2.5e3, 0.5, 0.5)
 DT = 1e-4

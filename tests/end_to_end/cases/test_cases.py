@@ -99,7 +99,7 @@ def test_every_expectation_is_complete_and_reasoned(case):
         assert row["tolerance"] >= 0
         assert len(row["because"].split()) > 2
         assert row["column"].endswith(f"({row['unit']})") or (
-            {"first_below", "last_above", "period_from"} & set(row["at"]) and row["unit"] == "s"
+            {"first_below", "first_above", "last_above", "period_from"} & set(row["at"]) and row["unit"] == "s"
         )
 
 
@@ -126,6 +126,8 @@ def test_numbers_are_read_from_the_series_as_stated():
     assert (at("end"), at("max"), at("min"), at(0.5)) == (4.0, 8.0, 3.0, 7.0)
     assert at({"first_below": 6.0}) == 1.0
     assert at({"last_above": 4.0}) == 1.0
+    assert at({"first_above": 7.0}) == 0.0
+    assert at({"first_above": 9.0}) == np.inf
     assert at({"first_below": 0.5, "share_of": "fall"}) == 1.0  # (6 - 4)/(8 - 4)
     assert at({"last_above": 0.45, "share_of": "peak"}) == 3.0  # 4/8
     assert at({"first_below": 1.0}) == np.inf

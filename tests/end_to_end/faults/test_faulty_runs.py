@@ -10,8 +10,8 @@ from porescale import open_run
 from porescale.common.record.checkpoint import read_checkpoint
 from porescale.common.record.drive import CHECK_EVERY
 from porescale.common.schema.sections import load
+from tests.reference.faults.seeded import INF, NAN, put
 from tests.reference.programs import KINDS, PACKAGES, program
-from tests.reference.seeded import INF, NAN, put
 
 AT = 50
 STEPS: dict[str, list[int]] = {}

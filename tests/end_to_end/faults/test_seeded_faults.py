@@ -10,8 +10,8 @@ from continuum_sph.scene.sections import Scene as Tank
 from porescale import build
 from porescale.builders.simulation import Simulation
 from porescale.common.schema.sections import validate
+from tests.reference.faults.seeded import INF, NAN, Running, put, running, times
 from tests.reference.scenes import column
-from tests.reference.seeded import INF, NAN, Running, put, running, times
 
 TANK = {
     "tank": {"width": 0.4, "height": 0.3},

@@ -8,9 +8,9 @@ import pytest
 from porescale import Scene, build
 from porescale.builders.simulation import Simulation
 from porescale.common.schema.sections import validate
-from tests.reference.killing import ASLEEP
+from tests.reference.faults.killing import ASLEEP
+from tests.reference.faults.seeded import INF, NAN, Running, put, running, times
 from tests.reference.scenes import column, grain
-from tests.reference.seeded import INF, NAN, Running, put, running, times
 
 pytestmark = pytest.mark.slow
 SQUARES = {

@@ -9,7 +9,7 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
 from continuum_sph.validation.seepage.levee import Levee
-from tests.reference.seeded import INF, NAN, Running, coincide, put, running, times
+from tests.reference.faults.seeded import INF, NAN, Running, coincide, put, running, times
 
 pytestmark = pytest.mark.slow
 

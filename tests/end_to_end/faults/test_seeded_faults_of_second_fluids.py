@@ -10,8 +10,8 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
 from porescale.common.schema.sections import load
+from tests.reference.faults.seeded import INF, NAN, Running, coincide, named, put, running, step, times
 from tests.reference.folders import CASES
-from tests.reference.seeded import INF, NAN, Running, coincide, named, put, running, step, times
 
 pytestmark = pytest.mark.slow
 COARSE = {

@@ -7,8 +7,8 @@ import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from tests.reference.faults.seeded import INF, NAN, Running, coincide, put, running, step, times
 from tests.reference.programs import SOIL
-from tests.reference.seeded import INF, NAN, Running, coincide, put, running, step, times
 
 AT = 50
 """The particle that most faults are put at: within the pile, on its way down."""

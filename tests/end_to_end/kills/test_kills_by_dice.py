@@ -1,4 +1,4 @@
-"""A few of the kills and stops that `python -m tests.reference.killing` makes by the thousand, others every day."""
+"""A few of the kills that `python -m tests.reference.faults.killing` makes by the thousand, others every day."""
 
 import datetime
 import json
@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.reference.faults.killing import COLD_PATIENCE, SCENES
 from tests.reference.folders import ROOT
-from tests.reference.killing import COLD_PATIENCE, SCENES
 from tests.reference.waiting import done
 
 SEED = int(os.environ.get("PORESCALE_SEED", datetime.date.today().toordinal()))
@@ -18,7 +18,7 @@ SEED = int(os.environ.get("PORESCALE_SEED", datetime.date.today().toordinal()))
 
 def killed(place: Path, *words: object) -> dict:
     """What a campaign of kills counted.  In a process of its own: one that has started threads must not fork."""
-    command = [sys.executable, "-m", "tests.reference.killing", *words, "--seed", SEED, "--out", place]
+    command = [sys.executable, "-m", "tests.reference.faults.killing", *words, "--seed", SEED, "--out", place]
     ended = done(command, 2 * COLD_PATIENCE, cwd=ROOT)  # a child that hangs is told of earlier
     assert ended.returncode == 0, f"seed {SEED}: {ended.stderr[-2000:]}"
     return json.loads((place / "kills.json").read_text())

@@ -12,7 +12,7 @@ import pytest
 from porescale import open_run
 from porescale.common.core.constants import GRAVITY
 from porescale.common.record.checkpoint import read_checkpoint
-from tests.reference.failing_disk import whole
+from tests.reference.faults.failing_disk import whole
 from tests.reference.programs import KINDS, Program, program
 from tests.reference.same_run import differences, state_of
 

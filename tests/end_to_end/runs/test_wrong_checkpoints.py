@@ -15,7 +15,7 @@ from porescale.common.record.checkpoint import read_checkpoint, read_header, wri
 from tests.reference.folders import ROOT
 from tests.reference.programs import KINDS, Program, program
 from tests.reference.same_run import differences
-from tests.reference.spoiled import renumbered
+from tests.reference.faults.spoiled import renumbered
 
 OTHERS = {"column": "tank", "asleep": "column", "framed": "tank", "tank": None, "seeping": "tank", "soil": "tank",
           "bubble": "tank", "air": "seeping"}  # fmt: skip

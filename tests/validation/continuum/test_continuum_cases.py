@@ -5,8 +5,8 @@ from functools import partial
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from tests.reference import continuum_cases
-from tests.reference.continuum_cases import missed
+from tests.reference.continuum import continuum_cases
+from tests.reference.continuum.continuum_cases import missed
 
 series = partial(continuum_cases.series, Simulation, 20)
 

@@ -9,7 +9,7 @@ from continuum_sph.seepage import Resistance, Supply
 from continuum_sph.validation.seepage import dam, infiltration
 from continuum_sph.validation.seepage.dam import DAM, STATIONS, SURFACE, Dam
 from continuum_sph.validation.seepage.infiltration import DRAWN
-from tests.reference.dam import surface
+from tests.reference.continuum.dam import surface
 from tests.validation.tolerances import tolerance
 
 PRINTED = DRAWN.porosity / (1.0 - DRAWN.porosity)

@@ -18,7 +18,7 @@ from continuum_sph.validation.seepage.heave import (
     rising,
 )
 from continuum_sph.validation.seepage.sheet_pile import SHARES, SheetPile, flow
-from tests.reference.sheet_pile import bounds, heads, thick, weakest_prism
+from tests.reference.continuum.sheet_pile import bounds, heads, thick, weakest_prism
 from tests.validation.tolerances import ROWS
 
 ROW = ROWS["continuum.heave_behind_pile"]

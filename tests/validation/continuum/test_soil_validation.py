@@ -7,8 +7,8 @@ import pytest
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.soil import Material
 from continuum_sph.validation.soil import bodies, element, energy, setups, slopes
-from tests.reference import continuum_cases
-from tests.reference.continuum_cases import missed
+from tests.reference.continuum import continuum_cases
+from tests.reference.continuum.continuum_cases import missed
 from tests.reference.folders import script
 from tests.validation.tolerances import tolerance
 

@@ -5,8 +5,8 @@ import pytest
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.validation.seepage import permeability, wet_slopes
 from continuum_sph.validation.seepage.wet_slopes import SEEPING, STILL, WetSlope
-from tests.reference import continuum_cases
-from tests.reference.continuum_cases import missed
+from tests.reference.continuum import continuum_cases
+from tests.reference.continuum.continuum_cases import missed
 from tests.validation.tolerances import ROWS, tolerance
 
 STEEP = "soil.body=[{outline=[[0,0],[2.2,0],[2.2,0.2],[1.224,0.2],[0.3,0.8],[0,0.8]]}]"  # 33 degrees

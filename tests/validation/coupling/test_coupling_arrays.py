@@ -11,7 +11,7 @@ from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.validation.coupling import arrays as lab
 from porescale.validation.coupling.setups import Method
 from porescale.validation.coupling.towed import square_array_drag
-from tests.reference.stokes_array import Array, square
+from tests.reference.coupling.stokes_array import Array, square
 from tests.validation.tolerances import tolerance
 
 PRINTED = Method("odd-SC1")

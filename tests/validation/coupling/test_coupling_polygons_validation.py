@@ -11,8 +11,8 @@ import pytest
 
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.validation.coupling import arrays, polygons, polygons_moving
-from tests.reference.shapes import fractions
-from tests.reference.stokes_polygons import Turning, regular
+from tests.reference.coupling.shapes import fractions
+from tests.reference.coupling.stokes_polygons import Turning, regular
 from tests.validation.tolerances import tolerance
 
 

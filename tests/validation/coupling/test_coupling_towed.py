@@ -5,7 +5,7 @@ import pytest
 
 from porescale.validation.coupling import moving, towed
 from porescale.validation.coupling.towed import faxen, weighing
-from tests.reference.stokes_box import Box, Enclosed, point_forces
+from tests.reference.coupling.stokes_box import Box, Enclosed, point_forces
 from tests.validation.tolerances import tolerance
 
 

@@ -6,7 +6,7 @@ import pytest
 from porescale.validation.coupling import conservation, setups, single_disc, towed
 from porescale.validation.coupling.conservation import FALL
 from porescale.validation.coupling.single_disc import RATIOS, TIMES
-from tests.reference import psm as twin
+from tests.reference.coupling import psm as twin
 from tests.validation.tolerances import tolerance
 
 # Laplace transform inverted by an independent code: v/((s - 1) g a²/nu) at nu t/a² = 0.05, 0.1, 0.2, 0.5

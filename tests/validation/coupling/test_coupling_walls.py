@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.reference import solid_operators as solid
-from tests.reference.plane_wall import steady_velocity
+from tests.reference.coupling import solid_operators as solid
+from tests.reference.coupling.plane_wall import steady_velocity
 
 EPS = np.finfo(float).eps
 ROWS = 6

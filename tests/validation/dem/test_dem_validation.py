@@ -8,7 +8,7 @@ import pytest
 from porescale.common.core.constants import GRAVITY
 from porescale.validation.dem import critical_step, restitution, rolling, stacks
 from porescale.validation.dem import setups as lab
-from tests.reference.dem import Body, World
+from tests.reference.dem.dem import Body, World
 from tests.validation.tolerances import tolerance
 
 

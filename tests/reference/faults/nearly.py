@@ -1,7 +1,7 @@
 """Scenes that are nearly right: shipped ones in which a few numbers, choices or sections are others.
 
-    python -m tests.reference.nearly --count 2000 --seed 5      every scene that `check` fails on without a refusal
-    python -m tests.reference.nearly --count 300 --build        builds those, too, that `check` accepts
+    python -m tests.reference.faults.nearly --count 2000 --seed 5  every scene that `check` fails on without a refusal
+    python -m tests.reference.faults.nearly --count 300 --build    builds those, too, that `check` accepts
 
 A mutant passes the schema or is refused by it; what is left may be wrong as physics.  Whatever it is, it is refused in
 lines, and never with a traceback.

@@ -7,7 +7,7 @@ that moves at speed 1 or stands.  One column, equilibria without squares of the 
 
 import numpy as np
 
-from tests.reference import solid_operators as solid
+from tests.reference.coupling import solid_operators as solid
 
 C, W, BACK = solid.DIRECTIONS, solid.WEIGHTS, solid.BACK
 

@@ -1,4 +1,4 @@
-"""Runs of both packages killed in phases chosen by dice: python -m tests.reference.killing --kills 1000
+"""Runs of both packages killed in phases chosen by dice: python -m tests.reference.faults.killing --kills 1000
 
 A run's process says through shared memory what it does, and how often it began that.  The dice choose a phase, which of
 its beginnings, and how long after it SIGKILL comes; then what lies in the folder is read, and the run is resumed, or
@@ -34,7 +34,7 @@ os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
 from porescale.common.record.checkpoint import read_header
 from porescale.common.schema.sections import load
-from tests.reference.failing_disk import whole
+from tests.reference.faults.failing_disk import whole
 from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
@@ -237,7 +237,7 @@ class Campaign:
         self.marks.clear()
         words, began, said = self.words(folder), time.monotonic(), self.place / "said"
         if cold is not None:
-            code = ("import sys; from pathlib import Path; from tests.reference.killing import Marks, run; "
+            code = ("import sys; from pathlib import Path; from tests.reference.faults.killing import Marks, run; "
                     "sys.exit(run(sys.argv[1], sys.argv[3:], Marks(Path(sys.argv[2]))))")  # fmt: skip
             given = os.environ | {
                 "NUMBA_CACHE_DIR": str(cold / "kernels"),

@@ -1,4 +1,5 @@
-"""Runs of the toy killed at calls to the disk or at moments of the clock: python -m tests.reference.killing_toy PLACE
+"""Runs of the toy killed at calls to the disk or at moments of the clock: python -m tests.reference.faults.killing_toy
+PLACE.
 
 The children are forked.  That is done from a process without threads, which is this one: of a process with threads only
 the forking one goes on in the child, which then waits for ever for a lock that another held.
@@ -14,7 +15,7 @@ import threading
 import time
 from pathlib import Path
 
-from tests.reference.failing_disk import Disk, calls, failing, whole
+from tests.reference.faults.failing_disk import Disk, calls, failing, whole
 from tests.reference.same_run import differences
 from tests.reference.toy_model import Toy, run_toy
 from tests.reference.waiting import ended

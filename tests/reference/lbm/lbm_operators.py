@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from tests.reference.lbm import C, W, equilibrium, guo
+from tests.reference.lbm.lbm import C, W, equilibrium, guo
 
 CX, CY = np.array(C, float).T
 ONE, CC = np.ones(9), CX**2 + CY**2

@@ -8,7 +8,7 @@ u carries half the force that acts in the cell:  rho u = sum f c + h.
 
 import numpy as np
 
-from tests.reference.lbm import BACK, C, W
+from tests.reference.lbm.lbm import BACK, C, W
 
 DIRECTIONS, WEIGHTS, BACK = np.array(C, float), np.array(W), np.array(BACK)
 

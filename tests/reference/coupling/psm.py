@@ -1,4 +1,4 @@
-"""Partially saturated cells, slow and obvious, on the two-array lattice of tests/reference/lbm.py.
+"""Partially saturated cells, slow and obvious, on the two-array lattice of tests/reference/lbm/lbm.py.
 
 Dense coverage of every disc from the area a circle has in common with a square.  Solid operators "odd-SC1" and "SC1"
 with weight B2, from Noble & Torczynski 1998: collision  f + (1 - B)(Omega^f + S) + B Omega^s;  loads
@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.reference import solid_operators as solid
-from tests.reference.lbm import BACK, C, Lattice, W, equilibrium, guo, trt
+from tests.reference.coupling import solid_operators as solid
+from tests.reference.lbm.lbm import BACK, C, Lattice, W, equilibrium, guo, trt
 
 
 def _under_edge(px, py, qx, qy, r):

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.reference.stokes_array import periodic_point_forces
+from tests.reference.coupling.stokes_array import periodic_point_forces
 
 
 def regular(corners, area, turn=0.0):

@@ -1,4 +1,4 @@
-"""Rigid clumps, slow and obvious: forces of every pair of discs by tests/reference/dem.py, summed about the centroid.
+"""Rigid clumps, slow and obvious: forces of pairs of discs by tests/reference/dem/dem.py, summed about the centroid.
 
 Members of a clump are not kept apart there: what they do to each other cancels in the sums.  Also the union of discs by
 lines across it, and pairs in a tilted cell by every image.
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.reference.dem import World
+from tests.reference.dem.dem import World
 
 
 @dataclass

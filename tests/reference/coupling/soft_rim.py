@@ -7,10 +7,10 @@ import math
 
 import numpy as np
 
-from tests.reference import lbm_operators
-from tests.reference import solid_operators as solid
-from tests.reference.lbm import Lattice
-from tests.reference.psm import coverage
+from tests.reference.coupling import solid_operators as solid
+from tests.reference.coupling.psm import coverage
+from tests.reference.lbm import lbm_operators
+from tests.reference.lbm.lbm import Lattice
 
 SLIP_FACTOR, SLIP_SHARE, LOW_PASS = 0.24, 0.02, 0.1
 

@@ -1,0 +1,18 @@
+"""Files of pages, and JavaScript put together without a build step."""
+
+import re
+from collections.abc import Iterable
+from functools import cache
+from importlib.resources import files
+
+
+@cache
+def static(name: str) -> str:
+    """The text of a file of ``static``."""
+    return files("porescale.common.page").joinpath("static", name).read_text(encoding="utf-8")
+
+
+def joined(texts: Iterable[str]) -> str:
+    """Files, each after those that it imports, as one module: imports between them left out, exports kept as names."""
+    text = re.sub(r"^import [^;]*? from \"\./[^;]*;\n", "", "\n".join(texts), flags=re.MULTILINE)
+    return re.sub(r"^export (?=(async )?(function|class|const))", "", text, flags=re.MULTILINE)

@@ -1,0 +1,1 @@
+"""A page on which a measured pair is looked at, vector by vector."""
