@@ -134,11 +134,8 @@ class SheetPile:
     def parameter(self) -> float:
         """k² of the sn of a rectangle as wide as ``reach``: K(1 - k²)/2K(k²)."""
 
-        def wider(logarithm: float) -> float:
-            m = np.exp(logarithm)
-            return float(ellipkm1(m) / (2.0 * ellipk(m))) - self.reach
-
-        return float(np.exp(brentq(wider, -60.0, -1e-9)))
+        found = brentq(lambda log: ellipkm1(np.exp(log)) / (2.0 * ellipk(np.exp(log))) - self.reach, -60.0, -1e-9)
+        return float(np.exp(found))
 
     def at_depth(self, depth: Floats | float) -> Floats:
         """Places on the half-plane's edge of points of the sheet's line, at a ``depth`` (m) below the surface."""
