@@ -16,6 +16,8 @@ LINE = {-1: ("phreatic", "#c0182b")}
 """Of the surface of the water in soil, which is no particle's layer."""
 AIR = {3: ("air", "#e2e2e2")}
 """And of air in it."""
+GROUND = ("water", "#5b8fd0"), ("soil", "#d9bd82")
+"""Of particles that are all of one kind."""
 TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 """Names and colours of two fluids."""
 
@@ -29,6 +31,7 @@ def look_of_scene(
     scene: Mapping[str, Any], name: str, surface: Callable[[Snapshot], Sequence[Line]] | None = None
 ) -> Look:
     """The look of a scene, as on a run card.  surface : of the water in soil, where it is known."""
+    from porescale.common.pictures.choose import with_section
     from porescale.common.pictures.look import Look
 
     width, height = scene["tank"]["width"], scene["tank"]["height"]
@@ -46,11 +49,13 @@ def look_of_scene(
         more = {"colour": "layer", "kinds": kinds, "marks": surface}
     elif scene["inclusion"]:
         more = {"colour": "fluid", "kinds": TWO}
-    return Look(
+    look = Look(
         title=scene["title"] or name,
         cloud="particles",
         lines=list(pairwise(corners)),
         dot=0.5 * scene["numerics"]["spacing"],
         view=(-margin, width + margin, -margin, height + margin),
+        density=scene["water"]["density"],
         **more,
     )
+    return with_section(look, scene.get("look"))

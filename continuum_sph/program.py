@@ -40,9 +40,8 @@ def drive(model: Model, folder: Path, scene: Scene, **options: Any) -> Outcome:
     from porescale.common.page.page import write_report
 
     def after(finished: Path) -> None:
-        """Leave the pictures, and the page if it is wanted."""
-        show(finished)
-        if scene.output.report:
+        """Leave the pictures, and the page unless the scene has none."""
+        if show(finished) and scene.output.report:
             write_report(finished, PROGRAM)
 
     return drive_scene(model, folder, scene, after=after, formerly=FORMERLY, **options)

@@ -47,10 +47,10 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
     from porescale.common.record.open_run import open_run
 
     def after(finished: Path) -> None:
-        """Leave the pictures, the permeability of the bed if there is one, and the page if it is wanted."""
-        show(finished)
+        """Leave the pictures, the permeability of the bed if there is one, and the page unless the scene has none."""
+        pictures = show(finished)
         write_permeability(open_run(finished), finished)
-        if scene.output.report:
+        if pictures and scene.output.report:
             write_report(finished, PROGRAM)
 
     packing = scene.grains.packing if scene.grains else None

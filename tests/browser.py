@@ -110,7 +110,8 @@ def axe() -> Callable[[Any], list[str]]:
     from axe_playwright_python.sync_playwright import Axe
 
     def violations(page: Any) -> list[str]:
-        found = Axe().run(page).response["violations"]
+        # Preloading would ask for style sheets anew, which pages from disk may not.
+        found = Axe().run(page, options={"preload": False}).response["violations"]
         return [
             f"{it['id']} ({it['impact']}): {it['help']}: {', '.join(str(node['target'][0]) for node in it['nodes'])}"
             for it in found

@@ -28,12 +28,16 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--share", default="0/1", help="run every n-th of the chosen tests, from the k-th: k/n")
+    parser.addoption("--share", help="of the slow tests run every n-th, from the k-th, beside the others: k/n")
     parser.addoption("--shuffle", type=int, help="run files, and the tests of each, in an order by this seed")
     parser.addoption("--compile-times", action="store_true", help="say which kernels took how long to compile")
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    from porescale.common.compiled.jit import when_compiling  # and with it numpy, once the variables above are set
+
+    # In systems of a few cells waiting for a second thread is all that is done, and the other worker needs the core.
+    when_compiling(lambda machine: machine.numba.set_num_threads(1))
     if config.option.compile_times:
         plugin = CompileTimes()
         config.pluginmanager.register(plugin)
@@ -42,14 +46,12 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if not config.option.markexpr:
-        deselected = [item for item in items if item.get_closest_marker("slow")]
-        items[:] = [item for item in items if not item.get_closest_marker("slow")]
-        config.hook.pytest_deselected(items=deselected)
-    part, parts = map(int, config.getoption("--share").split("/"))
-    if parts > 1:
-        config.hook.pytest_deselected(items=[item for k, item in enumerate(items) if k % parts != part])
-        items[:] = items[part::parts]
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    part, parts = map(int, (config.option.share or "0/1").split("/"))
+    kept = slow[part::parts] if config.option.share or config.option.markexpr else []
+    left = set(slow) - set(kept)
+    items[:] = [item for item in items if item not in left]
+    config.hook.pytest_deselected(items=list(left))
     if config.option.shuffle is not None:
         dice = random.Random(config.option.shuffle)
         files = {path: dice.random() for path in sorted({item.path for item in items})}
@@ -70,32 +72,19 @@ def process_state() -> dict[str, Any]:
 
 @pytest.fixture(autouse=True)
 def the_next_test_finds_the_process_as_it_was() -> Iterator[None]:
-    """Threads of the kernels as before each test, and an error where a test leaves anything else changed.
+    """One thread for the kernels again, and an error where a test leaves anything else changed.
 
     Libraries may set variables of the environment when they are imported.
     """
     before = process_state()
-    threads = sys.modules["numba"].get_num_threads() if "numba" in sys.modules else None
     yield
     if "numba" in sys.modules:
-        numba = sys.modules["numba"]
-        numba.set_num_threads(threads or numba.config.NUMBA_NUM_THREADS)
+        sys.modules["numba"].set_num_threads(1)
     after = process_state()
     after["environment"] = {key: after["environment"].get(key) for key in before["environment"]}
     tracemalloc.stop()
     os.chdir(before["folder"])
     assert after == before
-
-
-@pytest.fixture
-def one_thread() -> Iterator[None]:
-    """Kernels on one thread: in scenes of a few cells waiting for a second one is all that is done."""
-    from porescale.common.compiled.jit import set_threads, threads
-
-    before = threads()
-    set_threads(1)
-    yield
-    set_threads(before)
 
 
 @pytest.fixture

@@ -64,7 +64,8 @@ def part(field: Field, box: tuple[float, float, float, float]) -> Field:
 
 def as_lattice(field: Field, against: Comparison) -> Field:
     """The lattice's velocity at the vectors of a field that was compared with it."""
-    return replace(field, u=field.u + against.difference_u, v=field.v + against.difference_v)
+    u, v = field.u + against.difference_u, field.v + against.difference_v
+    return replace(field, u=u, v=v, uncertainty=np.full(u.shape, np.nan))
 
 
 def errors(found: Comparison, field: Field, scale: float) -> dict[str, float]:

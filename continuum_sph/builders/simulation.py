@@ -23,6 +23,7 @@ from porescale.common.schema.sections import scene_as_dict
 
 if TYPE_CHECKING:
     from porescale.common.api.report import Report
+    from porescale.common.pictures.initial import Initial
     from porescale.common.pictures.look import Look
 
 P = TypeVar("P", bound=Part)
@@ -106,6 +107,20 @@ class Simulation(ShownSimulation):
         row = {name: np.array([value]) for name, value in (table or {}).items()}
         surface = line_of(row, self.scene.numerics.spacing) if table else None
         return look_of_scene(scene_as_dict(self.scene), self.name, surface)
+
+    def _initial(self, snapshot: Snapshot) -> Initial:
+        from continuum_sph.features import features_of, lens_of
+        from continuum_sph.look import GROUND
+        from porescale.common.pictures.initial import Initial
+
+        look, cloud = self._look(), snapshot.clouds["particles"]
+        kinds = dict(look.kinds)
+        if not kinds:  # of one kind all: soil or water
+            cloud.data["layer"] = np.zeros(len(cloud.position), np.int8)
+            kinds, look = {0: GROUND[self.scene.soil is not None]}, replace(look, colour="layer")
+        return Initial(
+            replace(look, kinds=kinds, marks=None, lines=()), features_of(self.scene), lens_of(self.scene, snapshot)
+        )
 
     def _fields(self) -> dict[str, Field]:
         cloud = self.shown.cloud()

@@ -5,6 +5,7 @@ and the scene's own water, k = K ρ g/μ.  The card keeps where the numbers come
 """
 
 import hashlib
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import pydantic
 
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.statistics import half_width
 from porescale.common.core.units import to_si
 from porescale.common.schema import scene_file
 from porescale.common.schema.sections import Refused, Section, quantity, validate
@@ -24,13 +26,21 @@ DENSITY, VISCOSITY = 1000.0, 1.002e-3
 
 
 class Known(Section):
-    """A measured number;  standard_error : of the mean, deviation : of one packing;  values : one for each packing."""
+    """A measured number.  standard_error : of the mean, deviation : of one packing;  values : one for each packing;
+    interval : half of that of the mean at 95 %, systematic : what of it no packing shows."""
 
     mean: float
     standard_error: float = quantity("", ge=0)
     deviation: float = quantity("", ge=0)
     values: tuple[float, ...] = pydantic.Field(min_length=2)
+    interval: float | None = quantity("", None, ge=0)
+    systematic: float = quantity("", 0.0, ge=0)
     unit: str = ""
+
+    def half(self) -> float | None:
+        """Half of the interval of the mean at 95 %, of its values where the file does not say it; None if too few."""
+        found = half_width(self.values) if self.interval is None else self.interval
+        return found if math.isfinite(found) else None
 
 
 class Taken(Section):
@@ -86,6 +96,9 @@ class Origin(Section):
     measured: dict[str, tuple[float, float]] = pydantic.Field(
         default_factory=dict, description="mean and standard error of each number"
     )
+    intervals: dict[str, float] = pydantic.Field(
+        default_factory=dict, description="half of the interval at 95 % of each number that has one"
+    )
     made: dict[str, Any] = pydantic.Field(default_factory=dict, description="how the file was made")
 
     def __eq__(self, other: object) -> bool:
@@ -132,6 +145,7 @@ def with_material(table: Any, folder: Path | None) -> Any:
     taken |= state.model_dump()
     origin: dict[str, Any] = {"file": name, "sha256": digest, "made": file.made}
     origin["measured"] = {key: (it.mean, it.standard_error) for key, it in file.measured.items()}
+    origin["intervals"] = {key: half for key, it in file.measured.items() if (half := it.half()) is not None}
     if file.pores is not None:
         origin["intrinsic_permeability"] = file.pores.permeability
         taken["permeability"] = speed(file.pores.permeability, table.get("water"))

@@ -20,6 +20,7 @@ from continuum_sph.scene.tank import TankSection
 from continuum_sph.scene.water import Column, WaterSection
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault
+from porescale.common.schema.look import LookSection
 from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.sections import Refused, load, quantity
 
@@ -46,6 +47,7 @@ class Scene(SceneBase):
     numerics: NumericsSection
     time: TimeSection
     output: OutputSection
+    look: LookSection | None = None
 
     @pydantic.model_validator(mode="before")
     @classmethod

@@ -6,7 +6,9 @@ Axial strain a = -ε_yy and volume strain v = ε_xx + ε_yy, logarithmic, dilati
     sin ψ = D/(2 + D),  D = dv/da            dilatancy angle, by straight lines over 1 %
 
 Peak: where the mean over all tests is largest, what each test has there; the largest of each test alone would be the
-largest of its swings, which loose soil has, too.  Critical: the mean of the last third of a test.
+largest of its swings, which loose soil has, too.  Critical: the mean of the last third of a test, its dilatancy by one
+straight line: zero where volume no longer drifts.  How many independent values that mean has follows from their
+correlation over strain.
 
 Stiffness is that of the first loading to half of the largest deviator q = σ_yy - σ_xx, under constant σ_xx in plane
 strain: q = a E/(1 - ν²) and ε_xx = a ν/(1 - ν), both slopes by least squares through the origin (E50 of practice).
@@ -18,6 +20,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.statistics import independent
 from porescale.common.core.types import Floats
 
 WINDOW = 0.01
@@ -93,9 +96,13 @@ def peaks(every: Sequence[Mapping[str, Floats]]) -> tuple[Floats, Floats]:
 def _alone(it: Mapping[str, Floats]) -> dict[str, float]:
     """Numbers of one test that need no other."""
     late = it["strain"] > LATE * it["strain"][-1]
+    a, sine = it["strain"][late], it["sine"][late]
+    opening = max(float(np.polyfit(a, it["volume"][late], 1)[0]), -0.99)
     stiffness, poisson = first_loading(it)
     return {
-        "critical friction angle": math.asin(float(it["sine"][late].mean())),
+        "critical friction angle": math.asin(float(sine.mean())),
+        "critical dilatancy angle": math.asin(opening / (2.0 + opening)),
+        "independent critical values": independent(np.interp(np.linspace(a[0], a[-1], len(a)), a, sine)),
         "critical porosity": 1.0 - float(it["fraction"][late].mean()),
         "stiffness": stiffness,
         "Poisson's ratio": poisson,

@@ -93,6 +93,12 @@ def stiffness_over_pressure(scene: Scene) -> float:
     return law.stiffness / pressure_of(scene)
 
 
+def lambda_error(scene: Scene) -> float:
+    """By how much the hydraulic radius ratio of a scene may be off, relative; 0 where none is stated."""
+    ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
+    return section_of(scene).ratio_error / ratio if ratio else 0.0
+
+
 def ramp_of(section: Homogenise, packing: Packing) -> float:
     """Rate times the time in which a test comes to it: slowly enough for the stiffness of its first loading.
 

@@ -1,12 +1,13 @@
-"""A material file: what packings of grains show of the soil they make, with the standard error of each number.  TOML.
+"""A material file: what packings of grains show of the soil they make, with the interval of each number.  TOML.
 
 format          1
 [soil]          numbers that a scene of the continuum takes over: density (of grains per whole volume), porosity,
                 stiffness at the mean stress reference, poisson;  SI, angles in rad
 [strength.critical], [strength.peak]    friction_angle, dilatancy_angle: after large strains, and at failure
 [pores]         permeability: K, m², of which k = K ρ g/μ of the scene's own water
-[measured.…]    mean, standard_error, deviation of one packing, values, unit, of each number
-[made]          by what, of what, how: version, commit, scene, seeds, lambda, cells, grains, pressure …
+[measured.…]    mean, interval (half of that at 95 %, by Student's t, with what is systematic), systematic (lattice and
+                lambda), standard_error, deviation of one packing, values, unit, of each number
+[made]          by what, of what, how: version, commit, scene, seeds, lambda, cells, grains, pressure …; doubts
 """
 
 import math
@@ -16,24 +17,31 @@ from typing import Any
 
 import numpy as np
 
+from porescale.common.core.statistics import half_width
+
 FORMAT = 1
 NAME = "material.toml"
 SOLIDEST = 0.49
 """Poisson's ratio from where on an elastic soil is not one: such a ratio holds dilatancy, and is not taken over."""
 UNITS = {
     "porosity": "", "peak friction angle": "rad", "peak dilatancy angle": "rad", "critical friction angle": "rad",
-    "critical porosity": "", "stiffness": "Pa", "Poisson's ratio": "", "permeability": "m^2",
+    "critical dilatancy angle": "rad", "critical porosity": "", "stiffness": "Pa", "Poisson's ratio": "",
+    "permeability": "m^2",
     "permeability over hydraulic diameter squared": "", "hydraulic solid fraction": "", "lattice error": "",
+    "exponent of lambda": "", "independent critical values": "",
 }  # fmt: skip
 """Of every number, in the order of tables."""
+OWN_LENGTHS = {"permeability": 0.0, "permeability over hydraulic diameter squared": 2.0}
+"""Numbers that follow lambda, and the power of lambda that is divided out of them."""
 
 
 @dataclass(frozen=True)
 class Known:
-    """A number as several packings have it: values, one for each, in ``unit``."""
+    """A number as several packings have it: values, one for each, in ``unit``;  systematic : what no packing shows."""
 
     values: tuple[float, ...]
     unit: str = ""
+    systematic: float = 0.0
 
     @property
     def mean(self) -> float:
@@ -50,23 +58,51 @@ class Known:
         """Standard error of the mean."""
         return self.deviation / math.sqrt(len(self.values))
 
+    @property
+    def interval(self) -> float:
+        """Half of the interval of the mean at 95 %; nan where packings are too few for one."""
+        return math.hypot(half_width(self.values), self.systematic)
+
     def table(self) -> dict[str, Any]:
         """The number as a table of the material file."""
-        return {"mean": self.mean, "standard_error": self.error, "deviation": self.deviation,
+        made = {"mean": self.mean, "standard_error": self.error, "deviation": self.deviation,
                 "values": list(self.values), "unit": self.unit}  # fmt: skip
+        made |= {"interval": self.interval} if math.isfinite(self.interval) else {}
+        return made | ({"systematic": self.systematic} if self.systematic else {})
+
+    def text(self) -> str:
+        """Mean and interval for people, angles in degrees."""
+        scale, unit = (180.0 / math.pi, "degrees") if self.unit == "rad" else (1.0, self.unit)
+        bar = f"± {scale * self.interval:.2g}" if math.isfinite(self.interval) else "(no interval)"
+        return f"{scale * self.mean:.4g} {bar} {unit}".rstrip()
 
 
-def known(rows: Sequence[Mapping[str, float]]) -> dict[str, Known]:
-    """Every number over the packings, ``rows`` of name and value; left out where one of them has none."""
+def known(rows: Sequence[Mapping[str, float]], ratio_error: float = 0.0) -> dict[str, Known]:
+    """Every number over the packings, ``rows`` of name and value; left out where one of them has none.
+
+    ratio_error : by how much lambda may be off, relative: with the lattice's own it is systematic in K.
+    """
     names = [name for name in UNITS if all(math.isfinite(row.get(name, math.nan)) for row in rows)]
-    return {name: Known(tuple(float(row[name]) for row in rows), UNITS[name]) for name in names}
+    made = {name: Known(tuple(float(row[name]) for row in rows), UNITS[name]) for name in names}
+    for name, power in OWN_LENGTHS.items():
+        if name in made and {"lattice error", "exponent of lambda"} <= made.keys():
+            of_lambda = (made["exponent of lambda"].mean - power) * ratio_error
+            share = math.hypot(made["lattice error"].mean, of_lambda)
+            made[name] = Known(made[name].values, made[name].unit, abs(made[name].mean) * share)
+    return made
+
+
+def elastic(found: Mapping[str, Known]) -> bool:
+    """Whether the first loading is that of an elastic soil, which a continuum can take over."""
+    both = "stiffness" in found and "Poisson's ratio" in found
+    return both and found["stiffness"].mean > 0.0 and 0.0 <= found["Poisson's ratio"].mean < SOLIDEST
 
 
 def tables(found: Mapping[str, Known], density: float, pressure: float, made: Mapping[str, Any]) -> dict[str, Any]:
     """The tables of a material file.  density : of grains, kg/m³;  pressure : mean stress of the measurement, Pa."""
     mean = {name: it.mean for name, it in found.items()}
     soil = {"density": (1.0 - mean["porosity"]) * density, "porosity": mean["porosity"]}
-    if "stiffness" in mean and 0.0 <= mean["Poisson's ratio"] < SOLIDEST:
+    if elastic(found):
         soil |= {"stiffness": mean["stiffness"], "reference": pressure, "poisson": mean["Poisson's ratio"]}
     strength = {
         "critical": {"friction_angle": mean["critical friction angle"], "dilatancy_angle": 0.0},
@@ -82,10 +118,9 @@ def tables(found: Mapping[str, Known], density: float, pressure: float, made: Ma
 
 
 def text(found: Mapping[str, Known]) -> str:
-    """The numbers as lines for people, angles in degrees: mean, standard error, deviation of one packing."""
+    """The numbers as lines for people, angles in degrees: mean, interval, deviation of one packing."""
     lines = []
     for name, it in found.items():
-        scale, unit = (180.0 / math.pi, "degrees") if it.unit == "rad" else (1.0, it.unit)
-        mean, error, one = (scale * value for value in (it.mean, it.error, it.deviation))
-        lines.append(f"{name:<46}{mean:>11.4g} ± {error:<9.2g} {unit:<8} one packing ± {one:.2g}".rstrip())
+        scale = 180.0 / math.pi if it.unit == "rad" else 1.0
+        lines.append(f"{name:<46}{it.text():<32}one packing ± {scale * it.deviation:.2g}")
     return "\n".join(lines)

@@ -66,6 +66,32 @@ def kozeny_carman(solid_fraction: float) -> float:
     return (1 - solid_fraction) ** 3 / (4 * KOZENY * solid_fraction**2)
 
 
+def bed_of_spheres(porosity: float) -> float:
+    """K/d² of a bed of spheres (Kozeny & Carman), what a bed of discs stands for in three dimensions."""
+    return porosity**3 / (180.0 * (1.0 - porosity) ** 2)
+
+
+def ratio_for(relative: float, solid_fraction: float) -> float | None:
+    """Hydraulic radius ratio lambda at which a bed of discs of that ``solid_fraction``, as they are, has K/d².
+
+    relative : K/d², d that of the grains.  By Gebart's hexagonal array of solid fraction lambda² c, which dense random
+    beds follow within a tenth at 0.8: K/d² = (lambda/2)² K/R_h², falling with lambda.  None where even the largest or
+    the least lambda, 1 and 0.01, has less or more.
+    """
+
+    def found(ratio: float) -> float:
+        """K/d² at a ratio."""
+        return 0.25 * ratio**2 * gebart(ratio**2 * solid_fraction, hexagonal=True)
+
+    low, high = 0.01, 1.0
+    if not found(high) <= relative <= found(low):
+        return None
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if found(middle) > relative else (low, middle)
+    return 0.5 * (low + high)
+
+
 def measure(
     position: Reals,
     radius: Reals,

@@ -1,13 +1,18 @@
 """The permeability of a specimen as it stands before its test, on two lattices: what the grid leaves open is measured.
 
 Flow along y through the whole periodic cell, discs with the radius used in the fluid, lambda times theirs.  The error
-of the lattice is of second order, so that it is a third of what half the cells change.
+of the lattice is of second order, so that it is a third of what half the cells change.  How K follows lambda is
+measured on the coarser one, with discs larger by STEP: K ~ lambda^exponent.
 """
+
+import math
 
 from porescale.analysis.permeability import Measured, measure
 from porescale.common.core.types import Floats
 
 ORDER = 2
+STEP = 0.02
+"""Share by which lambda is raised to see how K follows it."""
 
 
 def flow_numbers(position: Floats, radius: Floats, side: float, cells: int) -> dict[str, float]:
@@ -16,12 +21,14 @@ def flow_numbers(position: Floats, radius: Floats, side: float, cells: int) -> d
     side : of the periodic cell, m;  cells : per mean hydraulic diameter.  "lattice error" is relative.
     """
     fine, coarse = (_through(position, radius, side, part) for part in (cells, cells / 2.0))
+    wider = _through(position, (1.0 + STEP) * radius, side, (1.0 + STEP) * cells / 2.0)  # on the same lattice
     k = fine.permeability
     return {
         "permeability": k,
         "permeability over hydraulic diameter squared": fine.relative,
         "hydraulic solid fraction": fine.solid_fraction,
         "lattice error": abs(k - coarse.permeability) / ((2**ORDER - 1) * k),
+        "exponent of lambda": math.log(wider.permeability / coarse.permeability) / math.log1p(STEP),
         "cells": fine.cells,
         "steady": float(fine.steady and coarse.steady),
     }

@@ -4,6 +4,7 @@ import contextlib
 import json
 import math
 from pathlib import Path
+from statistics import median
 
 from porescale.builders.derive import Derived
 from porescale.common.compiled.cache import cache_root
@@ -20,6 +21,8 @@ SNAPSHOT = 1000.0
 """Bytes of a snapshot besides its numbers."""
 ALWAYS = 2.0**27
 """Bytes that the compiler of kernels takes itself: any machine has them, and the question takes time to ask."""
+LAST = 5
+"""Runs of a kind whose median says how this machine compares: one that shared it with others has no say."""
 SIDE = 10
 """What a side of a polygon costs, in discs, at the most (verify measures it)."""
 
@@ -29,9 +32,9 @@ def memory(derived: Derived) -> float:
     total = 400.0 * derived.grain_count
     if derived.cells:
         nx, ny = derived.cells
-        total += 9 * 8 * (nx + 2) * (ny + 2)
+        total += 9 * derived.precision * (nx + 2) * (ny + 2)
         if derived.grain_count:
-            total += 3 * 8 * nx * ny
+            total += 3 * derived.precision * nx * ny
     if derived.diameters and derived.scales:
         total += 8 * derived.grain_count * (math.ceil(derived.diameters[2] / derived.scales.spacing) + 2) ** 2
     return total
@@ -53,16 +56,18 @@ def step_seconds(derived: Derived) -> float:
 
 def expected_seconds(derived: Derived, steps: int) -> tuple[float, bool]:
     """Wall-clock seconds of ``steps`` steps, and whether this machine has been measured."""
-    slowness = _slowness()
-    return steps * step_seconds(derived) * (slowness or 1.0), slowness is not None
+    slowness = _slowness().get(_kind(derived), [])
+    return steps * step_seconds(derived) * (median(slowness) if slowness else 1.0), bool(slowness)
 
 
 def remember(derived: Derived, steps_per_second: float) -> None:
-    """Note how this machine compares to the nominal rates, for the next ``check``, if the cache can be written."""
+    """Note how this machine compares to the nominal rates with such scenes, for the next ``check``, if the cache can be
+    written: the last LAST runs of each kind."""
     if steps_per_second > 0:
-        slowness = 1 / (steps_per_second * step_seconds(derived))
+        known, kind = _slowness(), _kind(derived)
+        known[kind] = [*known.get(kind, []), 1 / (steps_per_second * step_seconds(derived))][-LAST:]
         with contextlib.suppress(OSError):  # no room or no right to write: the next check guesses again
-            write_bytes(_file(), json.dumps({"slowness": slowness}).encode())
+            write_bytes(_file(), json.dumps({"slowness": known}).encode())
 
 
 def require_memory(derived: Derived) -> None:
@@ -84,9 +89,18 @@ def _file() -> Path:
     return cache_root() / "rate.json"
 
 
-def _slowness() -> float | None:
+def _kind(derived: Derived) -> str:
+    """Kind of scene whose steps cost alike: what is in it, how precise, and whether its size or its calls count."""
+    what = "fluid" * bool(derived.cells), "grains" * bool(derived.grain_count), "segments" * bool(derived.corners)
+    small = step_seconds(derived) < 4.0 * (COUPLED_CALLS if all(what[:2]) else CALLS)
+    return " ".join(filter(None, (*what, f"{8 * derived.precision}" * bool(derived.cells), "small" * small)))
+
+
+def _slowness() -> dict[str, list[float]]:
+    """How many times the nominal time the last runs of each kind took."""
     try:
-        value = float(json.loads(_file().read_text(encoding="utf-8"))["slowness"])
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return None
-    return value if math.isfinite(value) and value > 0 else None
+        table = json.loads(_file().read_text(encoding="utf-8"))["slowness"]
+        found = {str(kind): [float(value) for value in values] for kind, values in table.items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return {}
+    return {kind: it for kind, it in found.items() if it and all(math.isfinite(one) and one > 0 for one in it)}

@@ -57,6 +57,7 @@ class Derived:
     density_variation: float = 0.0
     warnings: tuple[str, ...] = field(default=())
     corners: int = 0  # of bodies of segments
+    precision: int = 8  # bytes of a number of the fluid
 
 
 def derive(scene: Scene) -> Derived:
@@ -117,6 +118,7 @@ def derive(scene: Scene) -> Derived:
     return Derived(
         scales, cells, column, law, wall_law, limit, step, steps, model_step, grain_count(scene), sizes,
         mean_mass, speed, variation, tuple(warnings), sum(len(it.frame.corners) for it in frames),
+        4 if scene.fluid and scene.fluid.precision == "float32" else 8,
     )  # fmt: skip
 
 

@@ -71,8 +71,8 @@ KINDS = (
 
 OF_THE_START = ("contact", "material", "wall", "ring", "lubrication")
 """Sections of which fluid and grains are made, with no part of their own."""
-OF_THE_RECORD = ("line", "permeability")
-"""Sections that are measured in what a run has recorded."""
+OF_THE_RECORD = ("line", "permeability", "homogenise")
+"""Sections that are measured in what a run has recorded, or by a command of its own."""
 SECTIONS = tuple(
     name
     for name in Scene.model_fields

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from porescale.analysis.permeability import gebart, kozeny_carman
+from porescale.analysis.permeability import bed_of_spheres, gebart, kozeny_carman, ratio_for
 from porescale.builders.checks.clear_packing import require_clear_packing
 from porescale.builders.cost import expected_seconds, memory, require_memory, snapshot_bytes
 from porescale.builders.derive import Derived, derive
@@ -24,6 +24,8 @@ from porescale.scene.scene import Scene
 
 WEEK = 7 * 86400.0
 """Seconds in a week."""
+SPHERES = 0.4
+"""Porosity of the bed of spheres that a bed of discs is compared with."""
 
 
 def report(scene: Scene) -> Report:
@@ -44,7 +46,8 @@ def report(scene: Scene) -> Report:
         out.row("cells across", scene.ring.diameter / derived.scales.spacing, "", "each row of the box is partly solid")
         out.row("speed of its wall", 0.5 * abs(scene.ring.spin) * scene.ring.diameter, "m/s")
     if scene.grains:
-        _grains(scene.grains, derived.grain_count - len(scene.disc), derived, out)
+        wanted = scene.permeability.wanted if scene.permeability else None
+        _grains(scene.grains, derived.grain_count - len(scene.disc), derived, wanted, out)
         _contact(derived, out)
     if next(own_laws(scene), None):
         _own_laws(scene, derived, out)
@@ -105,7 +108,7 @@ def _discs(discs: Sequence[Disc], derived: Derived, out: Report) -> None:
                 "U d/nu of the largest at the largest speed to expect")  # fmt: skip
 
 
-def _grains(grains: Grains, count: int, derived: Derived, out: Report) -> None:
+def _grains(grains: Grains, count: int, derived: Derived, wanted: float | None, out: Report) -> None:
     assert derived.diameters is not None
     out.heading("Grains")
     out.row("number", count)
@@ -114,10 +117,12 @@ def _grains(grains: Grains, count: int, derived: Derived, out: Report) -> None:
     if derived.scales:
         ratio = grains.hydraulic_radius_ratio or 1.0
         out.row("cells per diameter", mean / derived.scales.spacing)
+        out.row("cells per diameter of the smallest", low / derived.scales.spacing, "", "in the fluid: times lambda")
         out.row("hydraulic radius ratio", ratio, "", "lambda; 1 seals a 2-D bed at rest")
         out.row("cells per hydraulic diameter", ratio * mean / derived.scales.spacing)
         if packing := grains.packing:
             _bed(packing.packing_fraction * ratio**2, (0.5 * ratio * mean) ** 2, out)
+            _lambda(grains, packing.packing_fraction, wanted, out)
 
 
 def _frames(scene: Scene, derived: Derived, out: Report) -> None:
@@ -141,6 +146,20 @@ def _bed(solid_fraction: float, square: float, out: Report) -> None:
     out.row("permeability, hexagonal array", gebart(solid_fraction, hexagonal=True) * square, "m²", "Gebart 1992")
     out.row("permeability, Kozeny-Carman", kozeny_carman(solid_fraction) * square, "m²",
             "measured by [permeability]")  # fmt: skip
+
+
+def _lambda(grains: Grains, packing_fraction: float, wanted: float | None, out: Report) -> None:
+    """K over the grains' diameter², and which lambda gives that of spheres, and what is ``wanted``."""
+    ratio = grains.hydraulic_radius_ratio or 1.0
+    relative = 0.25 * ratio**2 * gebart(packing_fraction * ratio**2, hexagonal=True)
+    out.row("K/d² by Gebart", relative, "", "d of the grains, not lambda d")
+    targets = [("spheres", bed_of_spheres(SPHERES), f"of spheres at porosity {SPHERES:g}, Kozeny-Carman")]
+    if wanted is not None:
+        targets.append(("permeability.wanted", wanted, "wanted"))
+    for what, target, whose in targets:
+        found = ratio_for(target, packing_fraction)
+        text = "none" if found is None else f"{found:.3f}"
+        out.row(f"lambda for {what}", text, "", f"K/d² = {target:.3g} {whose}; by Gebart, within a tenth of K")
 
 
 def _contact(derived: Derived, out: Report) -> None:
@@ -205,7 +224,9 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     out.heading("Cost")
     out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
     out.row("memory", memory(derived) / 2**20, "MiB")
-    known = "by this machine's last run" if measured else "a guess until this machine has done a run"
+    known = (
+        "by this machine's last runs of such scenes" if measured else "a guess until this machine has done such a run"
+    )
     out.row("time", seconds, "s", known)
     if seconds > WEEK:
         out.warn(

@@ -20,6 +20,7 @@ from porescale.common.schema.sections import scene_as_dict
 
 if TYPE_CHECKING:
     from porescale.common.api.report import Report
+    from porescale.common.pictures.initial import Initial
     from porescale.common.pictures.look import Look
 
 P = TypeVar("P", bound=Part)
@@ -127,6 +128,14 @@ class Simulation(ShownSimulation):
         from porescale.output.show import look_of_scene
 
         return look_of_scene(scene_as_dict(self.scene), self.name)
+
+    def _initial(self, snapshot: Snapshot) -> Initial:
+        from porescale.common.pictures.initial import Initial
+        from porescale.output.features import features_of, lens_of
+
+        spacing = self.derived.scales.spacing if self.derived.scales else None
+        look = replace(self._look(), colour="", lines=())
+        return Initial(look, features_of(self.scene), lens_of(self.scene, snapshot, spacing))
 
     def _fields(self) -> dict[str, Field]:
         if self.fluid:

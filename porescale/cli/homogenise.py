@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -17,10 +18,18 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
+    from porescale.analysis.material import Known
     from porescale.builders.scene import Scene as Tables
     from porescale.common.studies.runner import Campaign, Ended
 
 SPECIMEN, PORES = "specimen.toml", "permeability.json"
+UNTIL = {
+    "friction": "critical friction angle", "peak": "peak friction angle", "dilatancy": "peak dilatancy angle",
+    "porosity": "porosity", "stiffness": "stiffness", "permeability": "permeability",
+}  # fmt: skip
+"""Words of `--until`."""
+MOST = 1000
+"""Packings, as of [homogenise]."""
 HEAD = """\
 # What soil these grains make; a scene of continuum-sph takes it over with
 #   [soil]
@@ -34,23 +43,26 @@ def homogenise(
     *,
     quality: Quality = None,
     settings: Settings = None,
+    until: Annotated[
+        str | None, Parameter(help="friction=2%: more packings until that interval (95 %) is as small")
+    ] = None,
     out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _soil if not given")] = None,
     jobs: Jobs = 1,
     threads: Threads = 1,
     scheduler: Scheduler = None,
     again: Again = False,
 ) -> int:
-    """Measure the soil that a scene's packing makes: strength, stiffness, porosity and permeability, with error bars.
+    """Measure the soil that a scene's packing makes: strength, stiffness, porosity and permeability, with intervals.
 
     Several packings are compressed in periodic cells (biaxial tests) and flow is driven through them, as [homogenise]
     of the scene gives.  material.toml is what `[soil] material = "material.toml"` of a continuum-sph scene reads;
     homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
     """
     start = require_scene(scene, "porescale")
-    from porescale.analysis.homogenise import section_of, specimen
+    from porescale.analysis.homogenise import lambda_error, section_of, specimen
+    from porescale.analysis.material import known
     from porescale.builders.scene import Scene as SceneType
     from porescale.common.schema.sections import open_scene
-    from porescale.common.studies.parameter_table import Point
     from porescale.common.studies.runner import Campaign
     from porescale.demseg.convert import toml
 
@@ -59,24 +71,75 @@ def homogenise(
     request = section_of(opened.scene)
     if jobs < 1:
         raise InputError(Fault("--jobs", jobs, "is out of range", "", ">= 1"))
+    aim = None if until is None else _aim(until)
     folder = output_folder(out, f"{opened.name}_soil")
     file = _specimen_file(folder, toml(test))
-    first = test["grains"]["packing"]["seed"]
-    points = [
-        Point(f"packing-{seed}", (f"grains.packing.seed={seed}",)) for seed in range(first, first + request.packings)
-    ]
     campaign = Campaign("porescale", file, folder / "specimens", threads=threads or 1, again=again)
     slots = enlist(campaign, jobs, scheduler)
-    found = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
-    ends = [found[point.name] for point in points]
-    if code := conclude(ends):
-        say(f"no material file: finish these first, by the same command in {folder}")
-        return code
     use_threads(threads)
-    rows = _numbers(opened.scene, ends, request.cells)
-    words = ["porescale", "homogenise", str(scene), *laid_over(quality, settings)]
-    print(write(folder, opened.scene, shlex.join(words), campaign, ends, rows))
+    first, count = test["grains"]["packing"]["seed"], request.packings
+    ends: list[Ended] = []
+    while True:
+        ends += _specimens(campaign, range(first + len(ends), first + count), slots)
+        if code := conclude(ends):
+            say(f"no material file: finish these first, by the same command in {folder}")
+            return code
+        rows = _numbers(opened.scene, ends, request.cells)
+        found = known(rows, lambda_error(opened.scene))
+        more = 0 if aim is None else _more(found, *aim)
+        if not more:
+            break
+        count += more
+    words = [
+        "porescale",
+        "homogenise",
+        str(scene),
+        *laid_over(quality, settings),
+        *(["--until", until] if until else []),
+    ]
+    print(write(folder, opened.scene, shlex.join(words), ends, rows))
     return 0
+
+
+def _specimens(campaign: Campaign, seeds: range, slots: int) -> list[Ended]:
+    """The tests of the packings of ``seeds``, in their order."""
+    from porescale.common.studies.parameter_table import Point
+
+    points = [Point(f"packing-{seed}", (f"grains.packing.seed={seed}",)) for seed in seeds]
+    found = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
+    return [found[point.name] for point in points]
+
+
+def _aim(text: str) -> tuple[str, float]:
+    """Number and share of `--until`; InputError where it is no such text."""
+    from porescale.common.cli.pick import share
+
+    word, _, small = text.partition("=")
+    if word.strip() not in UNTIL:
+        raise InputError(Fault("--until", text, "names no number", "", ", ".join(UNTIL), "write it as friction=2%"))
+    return UNTIL[word.strip()], share("--until", small)
+
+
+def _more(found: Mapping[str, Known], name: str, small: float) -> int:
+    """How many packings more the interval of a number takes; 0 where it is small enough, or never will be."""
+    from porescale.common.core.statistics import needed
+
+    if name not in found:
+        say(f"--until: {name} is absent, more packings do not show it")
+        return 0
+    it = found[name]
+    aim, have = small * abs(it.mean), len(it.values)
+    if it.interval <= aim:
+        return 0
+    if it.systematic >= aim:
+        say(f"--until: {name} {it.text()}: lattice and lambda alone leave ± {it.systematic:.2g}, whatever the packings")
+        return 0
+    count = needed(it.values, math.sqrt(aim**2 - it.systematic**2))
+    say(f"{name} {it.text()} after {have} packings; about {count:.3g} are needed")
+    if have >= MOST:
+        say(f"--until: stopped at {MOST} packings")
+        return 0
+    return int(min(max(count - have, 1), have, MOST - have))  # a deviation of few is not trusted with more than twice
 
 
 def _specimen_file(folder: Path, text: str) -> Path:
@@ -111,11 +174,11 @@ def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str,
 
 def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
     """Numbers of the flow through the packing that a specimen starts with; kept beside it once they are measured."""
-    from porescale.analysis.soil_pores import flow_numbers
+    from porescale.analysis.soil_pores import STEP, flow_numbers
     from porescale.common.core.atomic import write_text
     from porescale.common.record.open_run import open_run
 
-    kept, of = folder / PORES, {"lambda": ratio, "cells": cells}
+    kept, of = folder / PORES, {"lambda": ratio, "cells": cells, "step": STEP}
     try:
         known = json.loads(kept.read_text(encoding="utf-8"))
         if known["of"] == of:
@@ -135,13 +198,12 @@ def write(
     folder: Path,
     scene: Tables,
     command: str,
-    campaign: Campaign,
     ends: Sequence[Ended],
     rows: Sequence[Mapping[str, float]],
 ) -> str:
     """Write homogenise.csv, homogenise.png and, last, material.toml; gives the text to print about them."""
     from porescale.analysis.biaxial import curves
-    from porescale.analysis.homogenise import packing_of, pressure_of
+    from porescale.analysis.homogenise import lambda_error, packing_of, pressure_of
     from porescale.analysis.material import NAME, UNITS, known, tables, text
     from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.cli.homogenise_picture import picture
@@ -150,14 +212,14 @@ def write(
     from porescale.common.studies.sweep_files import csv_text
     from porescale.demseg.convert import toml
 
-    found = known(rows)
+    found = known(rows, lambda_error(scene))
     titles = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS.items() if name in found}
     seeds = [int(ended.point.value("grains.packing.seed")) for ended in ends]
     lines = [
         {"seed": seed, **{titles[name]: row[name] for name in titles}} for seed, row in zip(seeds, rows, strict=True)
     ]
     tests = [curves(read_series(ended.folder / "series.csv")) for ended in ends]
-    made = about(scene, command, ends, rows, seeds)
+    made = about(scene, command, ends, rows, found)
     whole = tables(found, MaterialPlan.of(scene).density(packing_of(scene).material), pressure_of(scene), made)
     material = HEAD + toml(whole)
     write_files(folder, {"homogenise.csv": csv_text(lines), "homogenise.png": picture(tests, found), NAME: material})
@@ -166,9 +228,14 @@ def write(
 
 
 def about(
-    scene: Tables, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, float]], seeds: Sequence[int]
+    scene: Tables,
+    command: str,
+    ends: Sequence[Ended],
+    rows: Sequence[Mapping[str, float]],
+    found: Mapping[str, Known],
 ) -> dict[str, Any]:
     """Origin of the numbers: [made] of the material file."""
+    from porescale.analysis.doubts import doubts as doubts_of
     from porescale.analysis.homogenise import HARD, packing_of, pressure_of, section_of, stiffness_over_pressure
     from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.common.core.machine import machine
@@ -177,7 +244,7 @@ def about(
     packing, request, fluid = packing_of(scene), section_of(scene), scene.fluid
     commit = ends[0].card.get("commit") or {}
     hard, ratio = stiffness_over_pressure(scene), scene.grains.hydraulic_radius_ratio
-    doubts = []
+    doubts = doubts_of(rows, found)
     if hard < HARD:
         doubts.append(f"contacts are {hard:.3g} times as stiff as the pressure: below {HARD:g} angles follow them")
     if ratio is None:
@@ -187,14 +254,15 @@ def about(
     made: dict[str, Any] = {
         "package": "porescale", "version": VERSION, "commit": str(commit.get("hash", "")),
         "sources": str(ends[0].card.get("sources", "")), "command": command, "machine": machine()["processor"],
-        "seeds": list(seeds), "grains": request.grains, "diameter": packing.diameter,
+        "seeds": [int(ended.point.value("grains.packing.seed")) for ended in ends],
+        "grains": request.grains, "diameter": packing.diameter,
         "grain_density": MaterialPlan.of(scene).density(packing.material),
         "settling_friction": packing.settling_friction,
         "pressure": pressure_of(scene), "stiffness_over_pressure": hard, "inertial_number": request.inertial_number,
         "strain": request.strain, "doubts": doubts,
     }  # fmt: skip
     if ratio is not None:
-        made |= {"lambda": ratio, "cells": rows[0]["cells"]}
+        made |= {"lambda": ratio, "lambda_error": request.ratio_error, "cells": rows[0]["cells"]}
     if fluid is not None:
         made |= {"fluid_density": fluid.density}
     return made

@@ -24,10 +24,9 @@ def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known]) -
         left.plot(test["strain"][::EVERY], angle[::EVERY], color="#2a6f97", lw=0.7)
         middle.plot(test["strain"][::EVERY], 100.0 * test["volume"][::EVERY], color="#2a6f97", lw=0.7)
     for name, colour in (("peak friction angle", "#8c1c2f"), ("critical friction angle", "#3b4552")):
-        mean, error = np.degrees(found[name].mean), np.degrees(found[name].error)
-        left.axhspan(
-            mean - error, mean + error, color=colour, alpha=0.35, lw=0, label=f"{name} {mean:.1f}° ± {error:.1f}°"
-        )
+        mean, wide = np.degrees(found[name].mean), np.nan_to_num(np.degrees(found[name].interval))
+        left.axhline(mean, color=colour, lw=1.0, label=f"{name} {found[name].text()}")
+        left.axhspan(mean - wide, mean + wide, color=colour, alpha=0.35, lw=0)
     left.set(xlabel="axial strain", ylabel="mobilised friction angle, degrees", ylim=(0.0, None))
     left.legend(fontsize=7, frameon=False, loc="lower right")
     middle.set(xlabel="axial strain", ylabel="volume, %")
@@ -35,13 +34,9 @@ def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known]) -
     for place, name in enumerate(names):
         it = found[name]
         right.plot(np.array(it.values) / it.mean, np.full(len(it.values), place), ".", color="#9fb8c8", ms=5)
-        right.errorbar(1.0, place, xerr=it.error / abs(it.mean), fmt="o", color="#8c1c2f", ms=4, capsize=4)
-    right.set_yticks(range(len(names)), [f"{name}\n{_shown(found[name])}" for name in names], fontsize=7)
+        if np.isfinite(it.interval):
+            right.errorbar(1.0, place, xerr=it.interval / abs(it.mean), fmt="o", color="#8c1c2f", ms=4, capsize=4)
+    right.set_yticks(range(len(names)), [f"{name}\n{found[name].text()}" for name in names], fontsize=7)
     right.invert_yaxis()
-    right.set_xlabel("of the mean; dots: packings, bars: standard error")
+    right.set_xlabel("of the mean; dots: packings, bars: intervals at 95 %")
     return png(figure, 100)
-
-
-def _shown(it: Known) -> str:
-    scale, unit = (180.0 / np.pi, "°") if it.unit == "rad" else (1.0, f" {it.unit}" if it.unit else "")
-    return f"{scale * it.mean:.3g} ± {scale * it.error:.1g}{unit}"

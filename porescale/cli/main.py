@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from cyclopts import App
 
-from porescale.cli import demseg, homogenise, piv
+from porescale.cli import demseg, homogenise, homogenise_volume, piv
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
 from porescale.common.evidence.register import discovered
@@ -60,11 +60,12 @@ PACKAGE = Package.of(
 
 
 def commands() -> App:
-    """All commands: those that every package has, `piv`, `demseg` and `homogenise`."""
+    """All commands: those that every package has, `piv`, `demseg`, `homogenise` and `study volume`."""
     app = application.application(PACKAGE)
     app.command(piv.command())
     app.command(demseg.command())
     app.command(homogenise.homogenise)
+    app["study"].command(homogenise_volume.volume)
     return app
 
 

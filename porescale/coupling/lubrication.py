@@ -2,12 +2,16 @@
 
 Two cylinders that close at V_n over a gap g << R* = R1 R2/(R1 + R2) (a wall: R* = R) resist with
 3 sqrt(2) pi mu (R*/g)^(3/2) V_n per metre of depth (Jeffrey & Onishi 1981; the limit of 4 pi mu V/(alpha - tanh alpha),
-alpha = arccosh(1 + g/R), as alpha goes to 0).  The lattice resolves films down to about a cell; what is missing below,
+alpha = arccosh(1 + g/R), as alpha goes to 0).  The lattice bears all of films of a few cells and nothing of those of no
+thickness.  The share that it lacks at x = g/h cells,
 
-    dF = -3 sqrt(2) pi mu R*^(3/2) (g^(-3/2) - g_c^(-3/2)) V_n,     0 < g < g_c,
+    lack(x) = (1 - x/3)²/(1 + 0.4 x + 0.77 x²),
+    dF = -3 sqrt(2) pi mu (R*/g)^(3/2) lack(g/h) V_n,     0 < g < g_c,
 
-is added here.  It acts in the contact steps dt, velocities half a step back: stable for six films around the lighter
-disc (of mass m), each against a neighbour as light, if C dt <= m/3 (integrate.packing_factor with a damping alone:
+is added here.  lack was measured with exact walls, on discs 20 cells wide that close on a wall and on each other at
+random angles and places, at gaps of 0.1 to 2 cells: force and correction are within 5 % of the exact force, at tau 0.6
+to 1, too.  It acts in the contact steps dt, velocities half a step back: stable for six films around the lighter disc
+(of mass m), each against a neighbour as light, if C dt <= m/3 (integrate.packing_factor with a damping alone:
 2 * 3 C/m <= 2/dt), which sets the thinnest film
 
     g_min = R* (9 sqrt(2) pi mu dt/m)^(2/3);     thinner ones count as g_min, touching ones as none.
@@ -26,18 +30,27 @@ from porescale.common.core.types import Floats
 from porescale.common.neighbors.cells import minimum_image
 from porescale.dem.grains import Grains
 
-CELLS = 1.0
-"""Gap in cells below which the correction acts, unless another is given."""
+CELLS = 3.0
+"""Gap in cells below which the correction acts, unless less is given: from there on the lattice lacks nothing."""
 FILM = 3 * math.sqrt(2) * math.pi
 """Force over mu V_n (R*/g)^(3/2)."""
 
 
 class FilmLaw(NamedTuple):
-    """viscosity : dynamic, Pa s;  cut : g_c, m, the gap from which the lattice does it;  dt : contact step, s."""
+    """viscosity : dynamic, Pa s;  spacing : h, m;  cut : g_c, m, at most 3 h: beyond nothing is added;  dt : contact
+    step, s."""
 
     viscosity: float
+    spacing: float
     cut: float
     dt: float
+
+
+@inline
+def lack(cells):
+    """Share of a film's force that the lattice lacks at a gap of so many ``cells``, 0 to 3."""
+    left = 1.0 - cells / CELLS
+    return left * left / (1.0 + 0.4 * cells + 0.77 * cells * cells)
 
 
 @inline
@@ -46,12 +59,12 @@ def film(gap, radius, mass, law):
 
     mass kg/m: of the lighter;  law: ``FilmLaw``.
     """
-    viscosity, cut, dt = law
+    viscosity, spacing, cut, dt = law
     if not 0.0 < gap < cut:
         return 0.0
     thinnest = radius * (3.0 * FILM * viscosity * dt / mass) ** (2.0 / 3.0)
     thick = max(gap, thinnest)
-    return max(0.0, FILM * viscosity * ((radius / thick) ** 1.5 - (radius / cut) ** 1.5))
+    return FILM * viscosity * (radius / thick) ** 1.5 * lack(thick / spacing)
 
 
 @kernel
@@ -94,15 +107,19 @@ def add_films(position, velocity, radius, mass, start, partner, period, walls, l
 class Lubrication:
     """The films of a system of grains.
 
-    radius (n,) m: those between which gaps lie;  viscosity: dynamic, Pa s;  cut: g_c, m;  dt: contact step, s.
+    radius (n,) m: those between which gaps lie;  viscosity: dynamic, Pa s;  spacing: of the lattice, m;
+    cut: g_c, m;  dt: contact step, s.
     force (n, 2) N/m: of the films on each disc, mean over the last call of ``step``.
 
     Raises InputError when the contact step allows no film thinner than ``cut``.
     """
 
-    def __init__(self, grains: Grains, radius: Floats, *, viscosity: float, cut: float, dt: float) -> None:
+    def __init__(
+        self, grains: Grains, radius: Floats, *, viscosity: float, spacing: float, cut: float, dt: float
+    ) -> None:
+        cut = min(cut, CELLS * spacing)
         self.radius, self.viscosity, self.cut, self.dt = radius, viscosity, cut, dt
-        self._law = FilmLaw(viscosity, cut, dt)
+        self._law = FilmLaw(viscosity, spacing, cut, dt)
         discs = grains.discs
         thinnest = self.thinnest(radius, discs.mass)  # at a wall, the largest R*
         worst = int(thinnest.argmax()) if discs.count else 0

@@ -97,7 +97,7 @@ class Coupled:
                 raise InputError(Fault("lubrication", True, "has no films between polygons", repair="leave it out"))
             self.lubrication = Lubrication(
                 grains, self.hydraulic_radius, viscosity=scales.density * scales.viscosity,
-                cut=film_gap * scales.spacing, dt=scales.step / contact_steps,
+                spacing=scales.spacing, cut=film_gap * scales.spacing, dt=scales.step / contact_steps,
             )  # fmt: skip
 
     def _set_immersed(self, weight: Reals) -> None:

@@ -48,22 +48,28 @@ def look_of(run: Run) -> Look:
 
 def look_of_scene(scene: dict[str, Any], name: str) -> Look:
     """The look of a scene, as on a run card."""
+    from porescale.common.pictures.choose import with_section
     from porescale.common.pictures.look import Look
     from porescale.output.frame_clouds import FRAMES
     from porescale.output.frame_pictures import cracks
 
-    return Look(
+    fluid = scene.get("fluid")
+    look = Look(
         title=title(scene, name),
         cloud="grains",
         label="speed of the fluid",
         lines=solid_lines(scene),
         walls="solid_fraction" if scene.get("rectangle") or scene.get("ring") else "",
-        streamlines=scene.get("fluid") is not None,
-        colour="velocity" if scene.get("fluid") is None else None,
+        streamlines=fluid is not None,
+        colour="velocity" if fluid is None else None,
         shapes=FRAMES,
         marks=cracks,
         view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
+        held=len(scene.get("disc") or ()),
+        density=(fluid or {}).get("density") or 0.0,
+        round_off=1e-4 if (fluid or {}).get("precision") == "float32" else 1e-12,
     )
+    return with_section(look, scene.get("look"))
 
 
 def _look_of_deck(name: str, deck: dict[str, Any]) -> Look:

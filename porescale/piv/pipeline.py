@@ -206,7 +206,7 @@ def write_review(measurement: Measurement, worst: Worst, found: list[str], path:
     fluid = int((~field.solid).sum())
     names = [it.name for it in film.files] if len(film.files) != 1 else [film.files[0].name] * 2
     first = film.start + worst.number * film.step
-    shown = [names[k] for k in (first, first + film.step)] if len(names) > first + film.step else ["picture"] * 2
+    shown = [names[k] for k in (first, first + film.step)] if len(names) > first + film.step else ["pictures"] * 2
     frames = "" if len(film.files) == 2 else f" (frames {first} and {first + film.step})"
     facts = [
         ("pictures", f"{shown[0]}, {shown[1]}{frames}" if shown[0] != shown[1] else f"{shown[0]}{frames}", False),
@@ -216,13 +216,15 @@ def write_review(measurement: Measurement, worst: Worst, found: list[str], path:
         ("step", f"{settings.step} px", False),
     ]
     if not measurement.average and measurement.total > 1:
-        facts.append(("pair", f"{worst.number} of {measurement.total}, the one with the fewest valid vectors", False))
+        facts.append(
+            ("pair", f"{worst.number} of 0 to {measurement.total - 1}, the one with the fewest valid vectors", False)
+        )
     if measurement.average:
         facts.append(("vectors of", f"all {measurement.pairs} pairs", False))
     speed = None
     if measurement.pixel is not None and measurement.interval is not None:
         speed = measurement.pixel / (measurement.interval * film.step)
-    title = f"Vectors of {shown[0] if shown[0] == shown[1] else ' and '.join(shown)}"
+    title = f"Vectors of {' and '.join(dict.fromkeys(shown))}"
     words = Shown(title, facts, found, corner(film), whole_size(film), settings.step, speed)
     return write_page(measurement.pair(worst.number, field), words, path)
 
@@ -242,7 +244,7 @@ def doubts(measurement: Measurement, seen: tuple[int, int], worst: Worst | None)
     share = seen[0] / max(1, seen[1])
     if worst is None or not seen[1] or share >= FEW_VALID:
         return []
-    pair = "" if measurement.total == 1 else f", of pair {worst.number} {100 * worst.share:.0f} %"
+    pair = "" if measurement.total == 1 else f" ({100 * worst.share:.0f} % of pair {worst.number})"
     found = advice(measurement.pair(worst.number, worst.field), measurement.settings)
     if not found:
         found = ["the pictures do not tell why: see them, and the vectors on them, by --review"]

@@ -9,4 +9,6 @@ class Lubrication(Section):
     The gap is that between the radii used in the fluid.
     """
 
-    gap: float = quantity("", 1.0, gt=0, le=10, help="gap in cells below which films are corrected")
+    gap: float = quantity(
+        "", 3.0, gt=0, le=10, help="gap in cells below which films are corrected; beyond 3 the lattice lacks nothing"
+    )

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import pydantic
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.schema.look import LookSection
 from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.sections import Refused, quantity
 from porescale.lbm.scales import NAMES
@@ -36,6 +37,11 @@ from porescale.scene.measures.region import Region
 from porescale.scene.output import Output
 from porescale.scene.sleep import Sleep
 from porescale.scene.time import Time
+
+QUICK = 500_000
+"""Cells of a lattice that are built within a second."""
+FEW = 400
+"""Squares of a diameter in a packing that settles within seconds."""
 
 
 class Scene(SceneBase):
@@ -75,6 +81,7 @@ class Scene(SceneBase):
     homogenise: Homogenise | None = None
     lubrication: Lubrication | None = None
     sleep: Sleep | None = None
+    look: LookSection | None = None
 
     @classmethod
     def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
@@ -87,6 +94,14 @@ class Scene(SceneBase):
     def _one_or_more(cls, given: Any) -> Any:
         """[bonds] is the same as one [[bonds]]."""
         return [given] if isinstance(given, Mapping) else given
+
+    @property
+    def drawn_at_once(self) -> bool:
+        """Whether next to nothing must be settled or pressed before it is drawn, and the lattice is no large one."""
+        packing, spacing = self.grains.packing if self.grains else None, self.fluid.spacing if self.fluid else None
+        large = spacing is not None and self.domain.width * self.domain.height > QUICK * spacing**2
+        many = packing is not None and packing.width * packing.height > FEW * packing.diameter**2
+        return not many and self.rock is None and not large
 
     @pydantic.model_validator(mode="before")
     @classmethod

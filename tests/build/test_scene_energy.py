@@ -6,7 +6,6 @@ from porescale.builders.build import build
 from tests.reference.scenes import grain
 from tests.reference.scenes_of_grains import loose
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 WIDE = 0.008
 LID = {"kind": "wall", "stress": "50 Pa", "fastest": "0.1 m/s"}
 PUSHER = {"kind": "wall", "velocity": ["2 cm/s", 0.0]}

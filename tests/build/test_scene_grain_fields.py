@@ -12,7 +12,6 @@ from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import scene_as_dict
 from tests.reference.scenes import dry, grain, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 CORNER = {"name": "corner", "lower": [0.0, 0.0], "upper": [0.004, 0.002]}
 ASKED = {
     "region": [CORNER, {"lower": [0.004, 0.0], "upper": [0.012, 0.008]}],

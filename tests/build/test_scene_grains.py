@@ -17,8 +17,6 @@ from porescale.dem.contact.linear import Linear, LinearKernel
 from tests.reference.scenes import column, dry, grain
 from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
 
 def test_the_card_of_a_scene_makes_the_same_scene():
     scene = loose(grain(0.002, 0.002), output__energy=True)

@@ -17,7 +17,6 @@ from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.scene.time_function import TimeFunction
 from tests.reference.scenes import dry, grain, refusals, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 EPS = np.finfo(float).eps
 H = 0.0002
 SWING = {"amplitude": 0.02, "frequency": 50.0, "phase": 0.3, "mean": 0.004}

@@ -8,7 +8,6 @@ from porescale.common.core.errors import InputError
 from porescale.scene.scene import Scene
 from tests.reference.scenes import dry
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 PERIODIC = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
 WALLED = PERIODIC | {"bottom": "wall", "top": "wall"}
 

@@ -18,7 +18,6 @@ from porescale.output.rectangle_mean import RectangleMean
 from porescale.output.sample import Sampler, along, midpoints
 from tests.reference.scenes import dry, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 DISC = {"x": 0.004, "y": 0.004, "diameter": 0.002}
 MEASURED: dict[str, Any] = {
     "probe": [{"name": "tap", "x": 0.001, "y": 0.002}],

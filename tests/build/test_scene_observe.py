@@ -15,8 +15,6 @@ from porescale.lbm.scales import Scales
 from porescale.output.surface import surface
 from tests.reference.scenes import column, dry, grain, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
 
 def hand(*grains):
     return build(dry(grains={"density": 2500, "grain": list(grains)}, gravity=[0.0, 0.0]))
@@ -140,6 +138,21 @@ def test_the_cost_learns_from_a_run(tmp_path, monkeypatch):
     assert seconds == pytest.approx(2.0, rel=1e-12)
     (tmp_path / "porescale" / "rate.json").write_text("nonsense")
     assert cost.expected_seconds(derived, 1000) == (guess, False)
+
+
+def test_one_kind_of_scene_learns_nothing_from_another_and_one_slow_run_has_no_say(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    wet, single = derive(column()), derive(column(fluid__precision="float32"))
+    for rate in (500.0, 5.0, 500.0):  # a run of three shared the machine
+        cost.remember(wet, rate)
+    assert cost.expected_seconds(wet, 1000)[0] == pytest.approx(2.0, rel=1e-12)
+    for other in (derive(dry()), single, derive(column(fluid__spacing=0.00002, fluid__step=4e-6))):
+        assert not cost.expected_seconds(other, 1000)[1]
+
+
+def test_single_precision_takes_half_of_the_populations(monkeypatch):
+    double, single = (cost.memory(derive(column(fluid__precision=it))) for it in ("float64", "float32"))
+    assert double - single == 4 * (9 * 62 * 42 + 3 * 60 * 40)  # and of three numbers that a cell has of its solid
 
 
 def test_a_small_run_does_not_make_the_machine_look_slow(tmp_path, monkeypatch):

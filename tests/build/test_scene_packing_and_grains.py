@@ -14,7 +14,6 @@ from porescale.common.core.errors import InputError
 from porescale.dem.measures.survey import elastic_energy
 from tests.reference.scenes import dry, grain
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 BED = {"left": 0.008, "width": 0.004, "height": 0.0055, "diameter": 0.0008, "packing_fraction": 0.7}
 GATE = {"x": 0.008, "opens_at": 0.01, "lift_speed": 0.4}
 STEPS = 200

@@ -23,7 +23,6 @@ from porescale.builders.simulation import Simulation
 from tests.reference.same_run import leaves
 from tests.reference.scenes import column, dry, grain, table, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 build = porescale.builders.build.build
 ROOT = Path(__file__).resolve().parents[2]
 STEPS = 60

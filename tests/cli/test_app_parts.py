@@ -19,8 +19,6 @@ from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, table, write
 from tests.reference.waiting import done
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
 
 def test_the_api_does_what_the_package_says(tmp_path):
     from porescale import Simulation, build, load, open_run

@@ -10,7 +10,7 @@ PLACES = [((0.5 + 0.7549 * k) % 1, (0.5 + 0.5698 * k) % 1) for k in range(8)]
 """Spread evenly over a cell: multiples of the powers of 1/1.3247, the root of x³ = x + 1."""
 
 
-@pytest.mark.parametrize("tau", [0.6, 0.8])
+@pytest.mark.parametrize("tau", [pytest.param(0.6, marks=pytest.mark.slow), 0.8])
 def test_the_drag_converges_at_second_order(tau):
     # Relative error C h² as a mean over places.  0.4: single places scatter by half of the mean, the mean of eight by
     # a sixth (0.5/sqrt 8 = 0.18), two means: sqrt 2 · 0.18/ln 2 = 0.36 of the order; first order would be 1.

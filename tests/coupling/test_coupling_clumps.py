@@ -12,7 +12,6 @@ from porescale.validation.coupling import clumps as verify_clumps
 from porescale.validation.coupling.clumps import VALIDATIONS, R, sunk
 from porescale.validation.coupling.clumps import immersed_clumps as immersed
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 TWO = [[(12.0, 20.0, 5.0), (16.0, 23.0, 4.0)], [(30.0, 24.0, 5.0), (34.0, 22.0, 5.0)]]
 TRIPLE = [(20.3, 30.1, 6.0), (26.2, 33.4, 4.5), (22.0, 37.7, 5.0)]
 

@@ -8,8 +8,6 @@ from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
 EPS = np.finfo(float).eps
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
 CHANNEL = Sides("periodic", "periodic", "wall", "wall")

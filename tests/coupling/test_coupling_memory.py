@@ -1,7 +1,6 @@
 """The grains of the paper's column take little room beside the fluid."""
 
 import numpy as np
-import pytest
 
 from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.fluid import Fluid
@@ -30,7 +29,6 @@ def held(spacing):
     return peak(lambda: SaturatedCells(fluid, radius).advance(fluid, centre, *motion))
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_the_papers_column_fits_into_eight_gigabytes_with_its_fluid():
     one_set = len(CX) * 4 * SIDE**2
     grains = held(1.0)

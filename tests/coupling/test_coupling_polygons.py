@@ -207,7 +207,6 @@ def flight(discs=True, steps=0, polygons=True):
     return coupled
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_a_state_of_polygons_goes_on_bit_for_bit():
     one, other = flight(steps=30), flight()
     other.restore(one.state())
@@ -229,7 +228,6 @@ def test_two_threads_give_the_bits_of_one():
         np.testing.assert_array_equal(one, other)
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_a_step_allocates_nothing_that_grows():
     coupled = flight(steps=4)
     assert (

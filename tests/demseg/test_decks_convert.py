@@ -14,8 +14,6 @@ from porescale.demseg.build import Options
 from porescale.demseg.run import read
 from tests.reference import decks
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
 
 def converted(tmp_path, gm, bc="", units="plain"):
     """The deck's grains and the scene's."""

@@ -13,7 +13,6 @@ from porescale.demseg.run import read
 from porescale.demseg.tension import tensions
 from tests.reference import decks
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 RANDOM = "0 0 0\n1d-6 0 0\n1\n2.5 1d8 .25d8 0 0 27\n0 30 0 30 0.1\n1 2\n1\n0.5\n"
 """82 discs in a square of 30, thick 0.1."""
 SIDE, GAP = 30.0, 0.1

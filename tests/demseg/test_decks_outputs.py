@@ -16,7 +16,6 @@ from porescale.demseg.run import read
 from porescale.output.deck_pictures import places_of_bodies, write_deck_pictures
 from tests.reference import decks
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 PAIR = decks.grains("2 1 0", "1 1 1", "0 0 0", "1 1.0d0", "0 .99 0", "2 1 1", "0 0 0", "1 1.0d0", "0 2.98 0",
                     "3 1 1", "0 2 0", "1 4 5", "6 5", dt="1d-9").replace("-980.0d0", "0.0d0")  # fmt: skip
 """Two discs, one on the other on the floor, each pressed in by 0.01; a segment that rises."""

@@ -12,7 +12,6 @@ from porescale.demseg.run import DeckRun, card_of, read
 from porescale.demseg.tension import read_tensions, tension_text
 from tests.reference import decks
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 OPTIONS = Options()
 
 

@@ -24,7 +24,6 @@ from porescale.demseg.trace import trace
 from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, row_on_floor
 from tests.reference.folders import CASES, script
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 UNIT = math.sqrt(math.pi * 4.0 * 2.5 / 1e8)
 """sqrt(m/k) of the tutorial's disc, s; twice that is dt_cr, 1.121e-3 (it prints 1.123e-3)."""
 PRINTED = 0.5 * 1.123e-3

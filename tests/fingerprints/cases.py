@@ -33,6 +33,7 @@ SCENES: dict[str, tuple[str, int, str | None, tuple[str, ...]]] = {
     "settling_square/scene.toml": (GRAINS, 200, "draft", ()),
     "soil_column_collapse/scene.toml": (CONTINUUM, 200, "draft", ()),
     "submerged_slope/scene.toml": (CONTINUUM, 150, "draft", ()),
+    "taylor_couette/scene.toml": (GRAINS, 400, "draft", ()),
     "tipping_tray/scene.toml": (GRAINS, 2000, "draft", ()),
     "towed_cylinder/scene.toml": (GRAINS, 200, "draft", ()),
     "trapped_air/scene.toml": (CONTINUUM, 150, "draft", ()),

@@ -36,7 +36,6 @@ def test_a_call_takes_an_even_number_of_steps_and_never_more_than_an_end_can_be_
     assert side_of(None) == SIZE
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_the_smallest_box_counts_its_cell_steps(monkeypatch):
     monkeypatch.setattr("porescale.benchmarks.lbm.MOST_STEPS", 2)
     works = [

@@ -57,7 +57,7 @@ def test_sense_ends_at_a_number_that_is_none_and_at_the_bounds():
     assert not sane(fluid)
 
 
-def test_the_quick_map_is_made_by_one_command(tmp_path, capsys, one_thread):
+def test_the_quick_map_is_made_by_one_command(tmp_path, capsys):
     words = ["study", "stability", "--quick", "--json", "--out", str(tmp_path / "map")]
     assert main(application(PACKAGE), words) == 0
     said = capsys.readouterr()

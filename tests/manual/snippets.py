@@ -76,7 +76,8 @@ def surroundings(folder: Path) -> dict[str, str]:
         path.chmod(0o755)
     sources = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     path_ = f"{folder}{os.pathsep}{os.environ['PATH']}"
-    return {**os.environ, "PATH": path_, "PYTHONPATH": sources, "MPLBACKEND": "Agg"}
+    # One thread: of two workers on two cores neither has another.
+    return {**os.environ, "PATH": path_, "PYTHONPATH": sources, "MPLBACKEND": "Agg", "NUMBA_NUM_THREADS": "1"}
 
 
 def run_page(page: Path, folder: Path) -> subprocess.CompletedProcess[str]:

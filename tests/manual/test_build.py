@@ -70,3 +70,17 @@ def test_a_docstring_is_found_with_its_formulas():
     for wrong in ("porescale.dem.contact.hertz.Hearts", "porescale.none_such.at_all", "no_package.x"):
         with pytest.raises(LookupError):
             docstring(wrong)
+
+
+def test_what_scrolls_is_reached_by_keyboard(page, axe, tmp_path):
+    script = (DOCS / "_static" / "manual.js").read_text(encoding="utf-8")
+    wide = "<pre style='overflow-x: auto; width: 20em'>" + "x" * 200 + "</pre><pre>x</pre>"
+    text = f"<p role=heading>Guides</p><main><h1>x</h1>{wide}</main>"
+    whole = f"<!doctype html><html lang=en><meta charset=utf-8><title>x</title><body>{text}"
+    for name, added in (("without", ""), ("with", f"<script>{script}</script>")):
+        (tmp_path / f"{name}.html").write_text(whole + added, encoding="utf-8")
+    page.goto((tmp_path / "without.html").as_uri())
+    assert [it.split(" ")[0] for it in axe(page)] == ["aria-required-attr", "scrollable-region-focusable"]  # must fail
+    page.goto((tmp_path / "with.html").as_uri())
+    assert axe(page) == []
+    assert page.locator("pre[tabindex]").count() == 1

@@ -12,7 +12,6 @@ from porescale.common.record.model import Cloud, Snapshot
 from porescale.output.grain_pictures import branches, chains, numbers, rose_of, write_chains, write_grain_pictures
 from tests.reference.scenes import dry, grain
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 LOOK = Look(title="three", view=(0.0, 0.012, 0.0, 0.008))
 ROW = [grain(0.001, 0.004), grain(0.0019996, 0.004), grain(0.0029988, 0.004), grain(0.006, 0.006)]
 """Three in a row with overlaps of 0.4 and 0.8 um, and one alone."""

@@ -14,7 +14,6 @@ from porescale.piv import measure
 from porescale.piv.images import flows
 from porescale.piv.images.synth import Camera, pair
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = (192, 192)
 
 

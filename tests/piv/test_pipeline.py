@@ -13,7 +13,6 @@ from porescale.piv.images.film import open_film
 from porescale.piv.images.synth import Camera, pair
 from porescale.piv.pipeline import Measurement, write_fields
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE, SHIFT = (96, 96), (2.4, -1.3)
 SETTINGS = Settings(window=16, search=8)
 

@@ -17,7 +17,6 @@ from porescale.piv.images.moving import Between, instant, nearest, pushed_out
 from porescale.piv.images.spots import coverage
 from porescale.piv.images.synth import Camera
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 CELLS, SIDE = 64, 0.032  # a square of 32 mm
 TURN = 2.0  # rad/s
 GRAIN = (0.024, 0.008, 0.003)

@@ -17,13 +17,13 @@ from porescale.piv.fields.compare import compare
 from porescale.piv.fields.field import in_metres, in_pixels
 from porescale.piv.fields.of_run import field_of_run, surface_of_run
 from porescale.piv.fields.vortices import Vortex, matched
+from porescale.piv.images import flows
 from porescale.piv.images.camera import Shooting, frames, shooting
 from porescale.piv.images.flows import Discs
-from porescale.piv.images.synth import Camera
+from porescale.piv.images.synth import Camera, exact, pair
 from porescale.validation.piv import surfaces as lab
 from porescale.validation.piv.surfaces import VALIDATIONS
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SIDE, CELLS, TURN = 0.032, 64, 2.0
 
 
@@ -36,6 +36,15 @@ def test_a_vortex_twice_as_strong_is_another_one():
     assert matched([one], [replace(one, x=15.0)]) == []
     near, alike = replace(one, x=10.5, circulation=9.5), replace(one, x=11.0, circulation=5.2)
     assert matched([one], [near, alike]) == [(one, alike)]  # nearly as near, and far more alike
+
+
+def test_noise_of_a_measured_field_is_no_vortex_to_compare():
+    made = pair(flows.uniform(2.0, 1.0), Camera((256, 256)), 0)
+    measured = in_pixels(measure(made.first, made.second))
+    found = compare(exact(made, 16, 8), measured)
+    assert (found.reference_vortices, found.other_vortices) == ([], [])
+    sure = replace(measured, uncertainty=0 * measured.uncertainty)  # the check that must fail: noise taken for motion
+    assert compare(exact(made, 16, 8), sure).other_vortices != []
 
 
 def test_a_grain_that_flies_would_spoil_the_surface(monkeypatch):  # the twin of the row that must fail

@@ -23,7 +23,6 @@ from porescale.piv.images.film import background, open_film, picture
 from porescale.piv.images.masks import bitmap, masks, polygon, segmented
 from porescale.piv.images.synth import Camera, Pair, exact, expose, pair, seeded
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = (96, 128)
 
 

@@ -15,7 +15,6 @@ from porescale.piv.estimate.rims import rims
 from porescale.piv.estimate.smoothing import smoothed
 from porescale.piv.images import spots
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 RNG = np.random.default_rng(6)
 EPS32 = float(np.finfo(np.float32).eps)
 

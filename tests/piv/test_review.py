@@ -15,7 +15,6 @@ from porescale.piv.images import flows
 from porescale.piv.images.synth import Camera, pair
 from porescale.piv.review import review
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = (128, 160)
 REGION = (16, 8, 144, 120)
 SCALE = {"scale": 1e-4, "interval": 5e-3}
@@ -188,6 +187,17 @@ def test_a_large_pair_loses_quality_before_the_page_grows(measured, monkeypatch,
     text = (tmp_path / review.NAME).read_text()
     assert "data:image/jpeg" in text
     assert len(text) < 0.06 * 2**20 < measured.page.stat().st_size
+
+
+def test_of_a_film_the_pair_with_the_fewest_valid_vectors_is_shown(page, tmp_path):
+    one, other = (pair(flows.uniform(2.0, 1.0), Camera(SIZE), seed) for seed in (1, 2))
+    with pytest.warns(PorescaleWarning, match=r"50 % of the vectors are valid \(0 % of pair 1\)"):
+        measure([one.first, one.second, other.first], out=tmp_path, review=True)
+    page.goto((tmp_path / review.NAME).as_uri())
+    facts = page.inner_text("#facts")
+    assert "frames 1 and 2" in facts
+    assert "1 of 0 to 1, the one with the fewest valid vectors" in " ".join(facts.split())
+    assert "not met where the displacement takes them" in page.inner_text("#doubts")
 
 
 def test_a_field_comes_back_onto_its_pictures(measured):

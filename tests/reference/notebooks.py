@@ -26,7 +26,7 @@ def executed(path: Path, folder: Path) -> nbformat.NotebookNode:
     client = NotebookClient(
         notebook, timeout=LIMIT, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
     )
-    client.execute(env={**os.environ, "PYTHONPATH": sources})
+    client.execute(env={**os.environ, "PYTHONPATH": sources, "NUMBA_NUM_THREADS": "1"})  # bits do not depend on it
     return notebook
 
 

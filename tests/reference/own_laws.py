@@ -24,11 +24,6 @@ def hertz(overlap, closing, radius, mass, p):
     return 4.0 / 3.0 * p.modulus * math.sqrt(radius * overlap) * overlap
 
 
-@ps.contact_law(keys={"modulus": "Pa"})
-def nearly_hertz(overlap, closing, radius, mass, p):
-    return 4.0 / 3.0 * p.modulus * math.sqrt(radius * overlap) * overlap * (overlap / radius) ** 1e-6
-
-
 @ps.contact_law(keys={"stiffness": "N/m", "adhesion": "N/m"})
 def sticky(overlap, closing, radius, mass, p):
     return p.stiffness * overlap - p.adhesion

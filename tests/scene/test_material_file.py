@@ -9,6 +9,7 @@ from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.scene.material_file import DENSITY, VISCOSITY
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.water import WaterSection
+from porescale.analysis.doubts import doubts
 from porescale.analysis.material import Known, known, tables
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
@@ -47,6 +48,62 @@ def test_mean_deviation_and_standard_error():
     assert it.mean == 3.0
     assert it.deviation == pytest.approx(math.sqrt(14.0 / 3.0), rel=1e-15)
     assert it.error == pytest.approx(math.sqrt(14.0 / 12.0), rel=1e-15)
+
+
+CRITICAL = {"critical dilatancy angle": 0.0, "independent critical values": 20.0}
+
+
+def soil(*changes: dict[str, float]) -> list[dict[str, float]]:
+    """Numbers of four packings that leave nothing to doubt, or what ``changes`` make of each."""
+    four = [{**row, **CRITICAL, "critical friction angle": 0.30 + 0.005 * k} for k, row in enumerate([*ROWS, *ROWS])]
+    return [row | change for row, change in zip(four, changes or [{}] * 4, strict=True)]
+
+
+def test_nothing_is_doubted_of_four_packings_that_agree():
+    assert doubts(soil(), known(soil())) == []
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (soil({"stiffness": math.nan}, {}, {}, {}), "stiffness is absent: 1 of 4 packings do not show it"),
+        (soil()[:2], "2 packings give no interval"),
+        (soil()[:3], "3 packings give a wide interval"),
+        (soil(*[{"Poisson's ratio": -0.28}] * 4), "are not those of an elastic soil"),
+        (soil(*[{"stiffness": -3189.0}] * 4), "are not those of an elastic soil"),
+        (soil(*[{"critical dilatancy angle": -0.03 - 0.001 * k} for k in range(4)]), "volume still drifts"),
+        (
+            soil(*[{"critical dilatancy angle": 0.1 * (-1) ** k} for k in range(4)]),
+            "whether volume still drifts is open",
+        ),
+        (soil(*[{"independent critical values": 2.0}] * 4), "2 independent values"),
+        (soil(*[{"critical friction angle": 0.3 + 0.05 * k} for k in range(4)]), "too wide to order friction"),
+        (soil(*[{"stiffness": 1e5 * 3.0**k} for k in range(4)]), "is hardly known"),
+    ],
+)
+def test_what_is_doubtful_is_said(rows, said):
+    lines = doubts(rows, known(rows))
+    assert any(said in line for line in lines), lines
+
+
+def test_what_is_no_elastic_soil_is_left_to_the_continuum_which_says_so(tmp_path):
+    rows = soil(*[{"Poisson's ratio": -0.28}] * 4)
+    material(tmp_path, rows, made={"doubts": doubts(rows, known(rows))})
+    made = scene(tmp_path)
+    assert made.soil.stiffness != pytest.approx(2.5e5)
+    assert any("not those of an elastic soil" in line for line in soil_report(made).warnings)
+    material(tmp_path, soil())  # the twin that must say nothing
+    assert not any("elastic" in line for line in soil_report(scene(tmp_path)).warnings)
+
+
+def test_lattice_and_lambda_stand_in_the_bar_of_the_permeability():
+    rows = [{"permeability": 4e-9, "permeability over hydraulic diameter squared": 4e-3, "lattice error": 0.03,
+             "exponent of lambda": -8.0}] * 4  # fmt: skip
+    found = known(rows, 0.005)  # packings agree: 3 % of the lattice beside 8 · 0.5 %, or 10 · 0.5 % of K/d²
+    assert found["permeability"].interval == pytest.approx(0.05 * 4e-9)
+    assert found["permeability over hydraulic diameter squared"].interval == pytest.approx(math.hypot(3, 5) * 4e-5)
+    assert found["permeability"].table()["systematic"] == pytest.approx(0.05 * 4e-9)
+    assert known(rows)["permeability"].interval == pytest.approx(0.03 * 4e-9)  # lambda known exactly
 
 
 def test_a_number_that_one_packing_lacks_is_left_out():
@@ -99,7 +156,12 @@ def test_the_card_keeps_where_numbers_come_from(tmp_path):
     assert error == pytest.approx(0.01)  # deviation 0.01 √2, over √2
     assert validate(Scene, card) == made
     said = soil_report(made).groups["measured on grains"]
-    assert any(row.name == "porosity" and "± 0.01" in row.note for row in said)
+    assert any(row.name == "porosity" and "no interval" in row.note for row in said)  # of two packings
+    material(tmp_path, soil())
+    said = soil_report(scene(tmp_path)).groups["measured on grains"]
+    # 0.01 either side of 0.19, four times: 3.182 · 0.011547/2; angles are read in degrees
+    assert any(row.name == "porosity" and "± 0.018 (95 %)" in row.note for row in said)
+    assert any(row.name == "critical friction angle" and row.unit == "degrees" for row in said)
 
 
 @pytest.mark.parametrize(

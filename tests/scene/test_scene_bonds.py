@@ -17,7 +17,6 @@ from porescale.output.rock_pictures import drawn, write_rock_picture
 from tests.reference.scenes import refusals
 from tests.reference.scenes_of_grains import assert_same_bits, framed, resumed
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 STIFFNESS, OVERLAP = 2e5, 8e-7
 SIDE = 1e-3
 """Of the squares; their lines are 0.1 mm apart less the overlap."""

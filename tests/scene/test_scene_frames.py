@@ -18,7 +18,6 @@ from porescale.common.schema.sections import scene_as_dict, validate
 from tests.reference.scenes import grain, refusals, water
 from tests.reference.scenes_of_grains import BOX, assert_same_bits, framed, lines, loose, resumed
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SQUARE = {"corners": [[0, 0], [1e-3, 0], [1e-3, 1e-3], [0, 1e-3]], "thickness": 5e-5}
 FLOOR = {"chain": [[1e-3, 1e-3], [9e-3, 1e-3]], "thickness": 1e-4, "name": "floor", "record": True}
 

@@ -13,7 +13,6 @@ from porescale.output.grain_pictures import branches
 from tests.reference.scenes import grain
 from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SIDES = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
 SIX = 0.006
 GRID = [grain(0.0005 + 0.001 * i, 0.0005 + 0.001 * j) for i in range(6) for j in range(6)]

@@ -14,7 +14,6 @@ from porescale.common.schema.sections import scene_as_dict, validate
 from tests.reference.scenes import grain
 from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 ROWS = [grain(0.0005 + 0.001 * i, 0.0005 + 0.001 * j) for i in range(4) for j in range(2)]
 """Two rows of four grains, as wide as the box of ``boxed``."""
 LID = {"kind": "wall", "stress": 100.0, "fastest": 0.01}

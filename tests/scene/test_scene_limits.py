@@ -127,3 +127,16 @@ def test_relaxation_times_are_right_where_the_map_says():
     at = (most - 0.5) / 3 * H**2 / 4e-5
     assert not said(alone(2500, 10.0, fluid__viscosity=0.999 * at), "relaxation time")
     assert "shorten the step" in said(alone(2500, 10.0, fluid__viscosity=1.01 * at), "relaxation time")[0]
+
+
+def test_resolution_is_judged_by_the_smallest_grain():
+    # mean 0.8 mm, λ = 0.8, cells of 0.1 mm: 6.4 of the mean, 6.4 (1 - spread) of the smallest
+    def said(spread):
+        given = column(fluid__spacing=1e-4, fluid__step=1e-5, grains__packing__size_spread=spread)
+        return [it for it in derive(given).warnings if "of the smallest grain" in it]
+
+    (line,) = said(0.9)
+    assert line.startswith("0.64 cells per hydraulic diameter of the smallest grain (6.4 of the mean): below 3")
+    assert "a spacing of 2.1e-05 m" in line
+    assert said(0.5) == []  # 3.2
+    assert len(said(0.6)) == 1  # 2.6

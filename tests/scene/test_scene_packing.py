@@ -17,7 +17,6 @@ from porescale.dem.measures.region import Region
 from porescale.dem.prepare.compaction import mean_stress, write_packing
 from tests.reference.scenes import dry, table
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 CURVE = [[0.0003, 0.0], [0.0006, 40.0], [0.0009, 100.0]]
 BOX = {"left": 0.0, "width": 0.012, "height": 0.008}
 ROUND = {f"domain__{side}": "periodic" for side in ("left", "right", "bottom", "top")}

@@ -23,7 +23,6 @@ def faults(*polygons, **changes):
     return " ".join(f"{fault.key} {fault.problem} {fault.repair}" for fault in caught.value.faults)
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_a_polygon_sinks_beside_a_grain_and_goes_on_bit_for_bit():
     # A held disc and a free grain besides: rows of discs come before those of corners.
     scene = wet(
@@ -47,7 +46,6 @@ def test_a_polygon_sinks_beside_a_grain_and_goes_on_bit_for_bit():
     assert one.series() == other.series()
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_the_load_of_a_held_disc_beside_polygons_is_its_own():
     held = {"x": 0.002, "y": 0.002, "diameter": 0.001, "velocity_x": {"amplitude": 0.01, "frequency": 50, "phase": 1.0}}
     model = build(wet(SQUARE, grains__grain=[grain(0.008, 0.005)], disc=[held], loads={"discs": [0]}))
@@ -59,14 +57,12 @@ def test_the_load_of_a_held_disc_beside_polygons_is_its_own():
     assert discs.position[1, 0] == pytest.approx(0.002 + model.scene.disc[0].travelled(model.time)[0], rel=1e-14)
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_a_polygon_that_is_told_stays():
     simulation = build(wet(SQUARE | {"held": True}, grains__grain=[grain(0.008, 0.005)]))
     simulation.advance(5)
     np.testing.assert_array_equal(simulation.coupled.polygons.velocity, 0.0)
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_a_held_polygon_alone_is_an_obstacle():
     simulation = build(wet(SQUARE | {"held": True}, fluid__body_force=[10.0, 0.0]))
     simulation.advance(5)

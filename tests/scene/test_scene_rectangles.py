@@ -18,7 +18,6 @@ from porescale.dem.measures.survey import elastic_energy, max_overlap, survey_re
 from porescale.scene.bodies.rectangle import Rectangle, outline
 from tests.reference.scenes import column, dry, grain, refusals, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 WALLS: dict[str, Any] = {"domain__left": "wall", "domain__right": "wall", "fluid__body_force": None, "gravity": [0, 0]}
 BLOCK: dict[str, Any] = {"lower": [0.004, 0.002], "upper": [0.006, 0.004]}
 PISTON: dict[str, Any] = {"lower": [-0.009, -0.001], "upper": [0.002, 0.009], "velocity": [0.05, 0.0]}

@@ -13,7 +13,6 @@ from porescale.builders.report import report
 from porescale.common.schema.sections import scene_as_dict, validate
 from tests.reference.scenes import column, dry, grain, refusals, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 DISC = {"x": 0.004, "y": 0.004, "diameter": 0.002}
 INLET = {"kind": "velocity", "velocity": [0.1, 0.0]}
 

@@ -15,18 +15,6 @@ from porescale.piv.images.synth import pair
 from porescale.validation.piv import pairs as lab
 from tests.validation.tolerances import tolerance
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
-
-@pytest.fixture
-def one_thread():
-    from porescale.common.compiled.jit import set_threads, threads
-
-    before = threads()
-    set_threads(1)
-    yield
-    set_threads(before)
-
 
 def test_a_few_steps_cut_the_corner(monkeypatch):
     monkeypatch.setattr(flows, "STEPS", 4)

@@ -3,13 +3,10 @@
 That each would fail with the error next door, the files beside this one test.
 """
 
-from contextlib import nullcontext
-
 import pytest
 
 from continuum_sph.cli import PACKAGE as CONTINUUM
 from porescale.cli.main import PACKAGE
-from porescale.validation.lbm.channels import one_thread
 
 ELSEWHERE = "scene."
 """Rows that tests of homogenisation run, which read their numbers too."""
@@ -18,6 +15,5 @@ ROWS = [row for package in (PACKAGE, CONTINUUM) for row in package.validations()
 
 @pytest.mark.parametrize("row", [pytest.param(row, id=row.name, marks=[pytest.mark.slow] * row.slow) for row in ROWS])
 def test_the_row_holds(row):
-    with one_thread() if row.name.startswith("piv.") else nullcontext():
-        found = row.run()
+    found = row.run()
     assert found.passed, found

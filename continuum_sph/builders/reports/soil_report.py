@@ -62,16 +62,21 @@ def soil_report(scene: Scene) -> Report:
 
 
 def report_origin(out: Report, origin: Origin | None) -> None:
-    """Add to a report what a scene's soil was measured with, and how well."""
+    """Add to a report what a scene's soil was measured with, how well, and what is to be doubted of it."""
     if origin is None:
         return
     out.heading("measured on grains")
     out.row("file", origin.file, "", f"SHA-256 {origin.sha256[:12]}")
-    for name, (mean, error) in origin.measured.items():
-        out.row(name.replace("_", " "), mean, "", f"± {error:.2g} (standard error)")
+    for name, (mean, _) in origin.measured.items():
+        scale, unit = (math.degrees(1.0), "degrees") if name.endswith("angle") else (1.0, "")
+        wide = origin.intervals.get(name)
+        bar = "no interval: too few packings" if wide is None else f"± {scale * wide:.2g} (95 %)"
+        out.row(name.replace("_", " "), scale * mean, unit, bar)
     for key in ("command", "version", "lambda", "cells", "pressure"):
         if isinstance(value := origin.made.get(key), str | int | float):
             out.row(key, value)
+    for doubt in origin.made.get("doubts") or ():
+        out.warn(f"{origin.file}: {doubt}")
 
 
 def report_watched(scene: Scene, out: Report) -> None:

@@ -20,6 +20,11 @@ SOUND_WARN = 0.3
 (coupling.sound) damping is right up to it with 5 cells per diameter and more."""
 RING_CELLS = 4.0
 """Fewest cells across the hole of a ring."""
+SMALLEST = 0.7
+"""Smallest over mean diameter below which the smallest grain is judged by itself: its drag, per weight, is twice as
+large, 1/0.7²."""
+CELLS_LEAST = 3.0
+"""Cells per hydraulic diameter below which a grain is hardly there for the fluid: fewest that any map has tried."""
 SINGLE_PRECISION = 1e-5
 """Speed in cells per step at which the round-off of float32, 6e-8 of populations of order 0.1 and collected over a
 momentum's memory of some hundred steps, is about a hundredth of it."""
@@ -76,6 +81,17 @@ def coarse(cells: float, solid_operator: str, weighting: str, spacing: float, so
     return (
         f"{cells:.3g} cells per diameter{bed}: below {needed:g} the drag is off by a tenth or more;"
         f" a spacing of {spacing * cells / needed:.2g} m gives as many"
+    )
+
+
+def coarse_smallest(smallest: float, mean: float, spacing: float) -> str:
+    """Where the smallest grains have too few cells per hydraulic diameter, though the mean ones may have enough."""
+    if smallest >= CELLS_LEAST:
+        return ""
+    return (
+        f"{smallest:.2g} cells per hydraulic diameter of the smallest grain ({mean:.2g} of the mean): below"
+        f" {CELLS_LEAST:g} its drag and pores are not there; a spacing of {spacing * smallest / CELLS_LEAST:.2g} m"
+        " gives as many, or narrow the sizes"
     )
 
 

@@ -14,7 +14,9 @@ from porescale.builders.checks.limits import (
     MACH_WARN,
     RING_CELLS,
     SINGLE_PRECISION,
+    SMALLEST,
     coarse,
+    coarse_smallest,
     light,
     slow,
     thin,
@@ -189,6 +191,8 @@ def check_regime(
     smallest, mean = (size * ratio / scales.spacing for size in sizes[:2])
     filled = packing.packing_fraction * ratio**2 if packing else 0.0
     found = [coarse(mean, *laws, scales.spacing, filled), slow(scales.relaxation_time, laws[0])]
+    if smallest < SMALLEST * mean:
+        found.append(coarse_smallest(smallest, mean, scales.spacing))
     if scene.grains:
         found.append(
             light(least_density(MaterialPlan.of(scene), scene.clump) / scales.density, smallest, *laws, scales.spacing)

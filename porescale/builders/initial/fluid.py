@@ -11,6 +11,7 @@ from porescale.builders.initial.frames import disc_count
 from porescale.builders.initial.ring import on_the_lattice
 from porescale.common.compiled.own import OwnLaw
 from porescale.coupling.coverage.rectangle import Rectangle
+from porescale.coupling.lubrication import CELLS
 from porescale.coupling.step import Coupled
 from porescale.dem.grains import Grains
 from porescale.lbm.boundary.sides import Sides
@@ -68,6 +69,6 @@ def coupled_of(
     return Coupled(
         fluid, grains, derived.scales, hydraulic_ratio=ratio, contact_steps=derived.contact_steps or 1,
         acceleration=scene.gravity, **solid_options(scene.fluid),
-        lubrication=films is not None, film_gap=films.gap if films else 1.0, rectangles=rectangles,
+        lubrication=films is not None, film_gap=films.gap if films else CELLS, rectangles=rectangles,
         rings=rings,
     )  # fmt: skip

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import fields
 from functools import cached_property
 from pathlib import Path
 from textwrap import shorten
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from porescale.common.core.html import html_table
 from porescale.common.record import open_run as record
@@ -19,8 +20,10 @@ if TYPE_CHECKING:
     import pyvista
     import xarray
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from porescale.common.api.program import Program
+    from porescale.common.pictures.choose import FigureWords, LookWords, Wanted
     from porescale.common.pictures.picture import Painter
     from porescale.common.pictures.shown import Film, Picture
 
@@ -141,22 +144,46 @@ class Run(record.Run):
 
         return plot(self.series if table == "series" else self.table(table), columns, ax)
 
-    def picture(self, k: int = -1) -> Picture:
-        """Snapshot ``k`` as `show` paints it, in colours that suit the whole run; ``.save(path)`` writes it."""
-        return self._painted(self.snapshot(k, self._painter.survey.look.cells))
+    def picture(self, k: int = -1, **words: Unpack[LookWords]) -> Picture:
+        """Snapshot ``k`` as `show` paints it, in colours that suit the whole run; ``.save(path)`` writes it.
 
-    def film(self, path: Path | str | None = None, *, rate: int | None = None) -> Film:
+        words : as the options of `show`: field, colour, limits, colour_limits, arrows, view, size, in SI or as texts
+        with units.  InputError where the run has not what they ask for.
+        """
+        painter = self._painter_of(words)
+        return self._painted(self.snapshot(k, painter.survey.look.cells), painter)
+
+    def film(self, path: Path | str | None = None, *, rate: int | None = None, **words: Unpack[LookWords]) -> Film:
         """Write the film that `show` writes; displays in notebooks.
 
         path : of the file (None: film in the run folder); the ending follows from the encoder, .mp4 or .webm;
-        rate : frames a second (None: so that it lasts about six seconds).
+        rate : frames a second (None: so that it lasts about six seconds);  words : as of `picture`.
         """
         from porescale.common.pictures.film import film_of
         from porescale.common.pictures.shown import Film
 
         stem = self.folder / "film" if path is None else Path(path)
         stem = stem.with_suffix("") if stem.suffix in (".mp4", ".webm") else stem
-        return Film(film_of(self, self._painter, stem, rate))
+        return Film(film_of(self, self._painter_of(words), stem, rate))
+
+    def figure(
+        self, path: Path | str | None = None, *, against: Run | None = None, **words: Unpack[FigureWords]
+    ) -> Figure | Path:
+        """The figure of `show` with options: one panel for each of ``times``, as a figure of matplotlib.
+
+        path : file to write instead, .png, .pdf, .svg, .mp4 or .gif; its path is returned;  against : another run, set
+        beside this with the same colours;  words : those of `picture`, and times (s), every, fps, style ("paper" or
+        "talk") and format.  InputError where the runs have not what they ask for, or their boxes differ.
+        """
+        from porescale.common.pictures.choose import Wanted
+        from porescale.common.pictures.figure import figure_of, write_figure
+
+        wanted = wanted_of(Wanted, words)
+        runs = [self] if against is None else [self, against]
+        for run in runs:
+            run._require_own()
+        looked = [(run, run.program.look(run)) for run in runs]
+        return figure_of(looked, wanted) if path is None else write_figure(looked, wanted, Path(path))
 
     def measure(self, *given: Any, out: Path | str | None = None, **sections: Any) -> dict[str, Columns]:
         """What sections of a scene measure, at every snapshot of this run, as tables by name: {"probes": Columns, …}.
@@ -199,10 +226,21 @@ class Run(record.Run):
         self._require_own()
         return painter_of(self, self.program.look(self))
 
-    def _painted(self, snapshot: Snapshot) -> Picture:
+    def _painter_of(self, words: LookWords) -> Painter:
+        """What paints snapshots as ``words`` ask for."""
+        from porescale.common.pictures.choose import Wanted
+        from porescale.common.pictures.picture import painter_of
+
+        wanted = wanted_of(Wanted, words)
+        if wanted.plain or not len(self):
+            return self._painter
+        self._require_own()
+        return painter_of(self, wanted.look(self.program.look(self), self))
+
+    def _painted(self, snapshot: Snapshot, painter: Painter | None = None) -> Picture:
         from porescale.common.pictures.shown import Picture
 
-        return Picture(self._painter.paint(snapshot), f"{self.name}, t = {snapshot.time:.6g} s")
+        return Picture((painter or self._painter).paint(snapshot), f"{self.name}, t = {snapshot.time:.6g} s")
 
     def __repr__(self) -> str:
         ended = f"{self.outcome or 'run'} at t = {float(self.card.get('time') or 0.0):.6g} s"
@@ -235,6 +273,15 @@ class Run(record.Run):
         if picture is None:
             return text
         return f"{text}<img style='max-width:100%' src='data:image/png;base64,{b64encode(picture).decode()}'>"
+
+
+def wanted_of(kind: type[Wanted], words: Mapping[str, Any]) -> Wanted:
+    """Words of Python as what is wanted; InputError, with the nearest, for a word that is none."""
+    known = [it.name for it in fields(kind)]
+    for name in words:
+        if name not in known:
+            raise missing("argument", name, known, "those of pictures")
+    return kind(**words)
 
 
 def open_run(folder: Path | str, program: Program) -> Run:

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from porescale.common.api.fields import Field
     from porescale.common.api.report import Report
     from porescale.common.core.types import AnyArray
+    from porescale.common.pictures.initial import Initial
     from porescale.common.pictures.look import Look
+    from porescale.common.pictures.shown import Picture
     from porescale.common.record.model import Snapshot
 
 
@@ -43,6 +45,21 @@ class ShownSimulation(BaseSimulation):
     @abstractmethod
     def _with_field(self, snapshot: Snapshot, look: Look, name: str, field: Field) -> Look:
         """Put a field into a snapshot, and the look that shows it."""
+
+    @abstractmethod
+    def _initial(self, snapshot: Snapshot) -> Initial:
+        """What the picture of its scene shows of a snapshot of it."""
+
+    def scene_picture(self) -> Picture:
+        """The state now to scale, with everything in the scene labelled and a lens on its resolution.
+
+        It is what `check --picture` and a scene's ``picture`` show of the built initial state.
+        """
+        from porescale.common.pictures.initial import initial_pixels
+        from porescale.common.pictures.shown import Picture
+
+        snapshot = self.snapshot()
+        return Picture(initial_pixels(snapshot, self._initial(snapshot)), self.name)
 
     @property
     def field_names(self) -> list[str]:

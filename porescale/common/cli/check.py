@@ -1,19 +1,41 @@
-"""`check SCENE`: what a scene means, before any of it runs."""
+"""`check SCENE`: what a scene means, before any of it runs, and what it looks like."""
 
 import json as json_text
+import sys
 from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
 
 from porescale.common.cli.options import Json, Quality, Scene, Settings, require_scene
 from porescale.common.cli.package import Package
+from porescale.common.core.errors import Fault, InputError
+
+Drawing = Annotated[
+    list[Path] | None,
+    Parameter(
+        help="draw the built initial state into this PNG file, scene.png if none is named", consume_multiple=(0, 1)
+    ),
+]
 
 
 def command(package: Package) -> Callable[..., int]:
     """The `check` command of a package."""
 
-    def check(scene: Scene, /, *, quality: Quality = None, settings: Settings = None, json: Json = False) -> int:
+    def check(
+        scene: Scene,
+        /,
+        *,
+        quality: Quality = None,
+        settings: Settings = None,
+        json: Json = False,
+        picture: Drawing = None,
+    ) -> int:
         """Say what a scene means (resolution, stability, cost) without running it; warn or refuse."""
         from porescale.common.schema.sections import open_scene
 
+        file = None if picture is None else drawing(*picture)
         opened = open_scene(
             require_scene(scene, package.name), package.scene(), quality=quality, overrides=settings or ()
         )
@@ -22,6 +44,23 @@ def command(package: Package) -> Callable[..., int]:
             print(json_text.dumps(report.as_dict(), indent=1))
         else:
             report.show()
+        if file is not None:
+            draw(opened.scene, file)
         return 0
 
     return check
+
+
+def drawing(file: Path = Path("scene.png")) -> Path:
+    """The file of a picture; InputError unless it is a PNG file that can be written."""
+    if file.suffix.lower() != ".png":
+        raise InputError(Fault("--picture", str(file), "is no PNG file", repair=f"name it {file.stem or 'scene'}.png"))
+    if file.is_dir():
+        raise InputError(Fault("--picture", str(file), "is a folder", repair="name a file"))
+    return file
+
+
+def draw(scene: Any, file: Path) -> None:
+    """Write the picture of a scene and name it; a packing that is settled for it says how far it is."""
+    scene.picture().save(file)
+    print(file, file=sys.stderr)

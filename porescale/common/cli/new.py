@@ -24,9 +24,10 @@ def command(package: Package) -> Callable[..., int]:
         folder = Path(name)
         try:
             if from_ is not None:
-                _copy(from_, folder)
+                _copy(package, from_, folder)
                 return 0
             _write(folder, package.template())
+            _draw(package, folder)
         except OSError as error:
             raise unusable(folder, "NAME", error) from error
         print(f"{folder / 'scene.toml'}\nnext: {package.name} check {folder}; {package.name} run {folder}")
@@ -45,7 +46,7 @@ def _write(folder: Path, text: str) -> None:
         stream.write(text)
 
 
-def _copy(name: str, folder: Path) -> None:
+def _copy(package: Package, name: str, folder: Path) -> None:
     """Copy what the case needs to run to ``folder``, all of it or nothing; print what is there and what runs it."""
     from porescale.common.api.shipped import LEFT_OUT, cases, nearest_case
     from porescale.common.core.atomic import whole_folder
@@ -70,7 +71,24 @@ def _copy(name: str, folder: Path) -> None:
     elif case.kind == "deck":
         print(f"next: porescale demseg run {folder}")
     else:
+        if case.package == package.name:
+            _draw(package, folder)
         print(f"next: {case.package} check {folder}; {case.package} run {folder}")
+
+
+def _draw(package: Package, folder: Path) -> None:
+    """Draw the scene in ``folder`` into scene.png, where it takes no longer than to look at it; else say what does."""
+    from porescale.common.cli.check import draw
+    from porescale.common.schema.scene import SceneBase
+    from porescale.common.schema.sections import open_scene
+
+    if not (folder / "scene.toml").is_file():
+        return
+    scene = open_scene(folder, package.scene()).scene
+    if isinstance(scene, SceneBase) and scene.drawn_at_once:
+        draw(scene, folder / "scene.png")
+    else:
+        print(f"see it: {package.name} check {folder} --picture")
 
 
 def _refuse(taken: Path) -> None:

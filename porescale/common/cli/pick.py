@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 import math
+import shlex
 import sys
-from collections.abc import Sequence
-from dataclasses import replace
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
-    from porescale.common.studies.front import Choice, FrontPoint, Here
+    from porescale.common.studies.front import Choice, Front, FrontPoint, Here
+
+
+FREE = "title", "output.", "quality_default"
+"""Keys that change neither errors nor what steps cost."""
+BLOCK = 6
+"""Snapshots more of the longer one of two short runs that show what a snapshot costs."""
+SHORT = 2.0
+"""Seconds of steps in the longer one, at most."""
+LITTLE = 0.05
+"""Share of a budget that a try of the record may take."""
 
 
 def pick(
@@ -21,43 +34,173 @@ def pick(
 ) -> Choice:
     """The point, printed on stderr with expected cost and error; InputError on wrong
     options, no front, or nothing that fits."""
+    from porescale.common.core.machine import age
     from porescale.common.schema.scene_file import find
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.front import begun, choose, read_front
 
-    allowed = None if error is None else _share(error)
+    allowed = None if error is None else share("--error", error)
     seconds = None if budget is None else _seconds(budget)
-    front = read_front(find(scene))
+    file = find(scene)
+    front = read_front(file, _end(open_scene(file, package.scene(), overrides=settings).scene))
+
+    record = _Record(package, file, settings, seconds)
 
     def here(point: FrontPoint) -> Here:
         """The beginning of the point's scene, and the time it is to simulate, s, where its scene says that."""
-        overrides = (*point.settings, *settings)
-        opened = open_scene(scene, package.scene(), quality=point.quality, overrides=overrides)
+        opened = open_scene(file, package.scene(), quality=point.quality, overrides=(*point.settings, *settings))
         package.report(opened.scene)  # what contradicts itself is refused
-        end = getattr(getattr(opened.scene, "time", None), "end", None)
-        return begun(lambda: package.build(opened.scene), end)
+        return begun(lambda: package.build(opened.scene), _end(opened.scene), record.of(point))
 
     try:
-        choice = choose(front, allowed, seconds, here)
+        choice = choose(front, allowed, seconds, here, age)
     except InputError as refused:  # said with what was given
         given = {"--error": error, "--budget": budget}
-        raise InputError([replace(it, value=given.get(it.key) or it.value) for it in refused.faults]) from None
-    if settings and not quiet:
-        print(f"warning: {front.file} was measured without --set {' '.join(settings)}", file=sys.stderr)
+        faults = [replace(it, value=given.get(it.key) or it.value) for it in refused.faults]
+        level = "" if allowed is None else better_level(package, file, front, allowed)
+        more = [replace(it, repair=f"{it.repair}; {level}") if level and it.key == "--error" else it for it in faults]
+        raise InputError(more) from None
     if not quiet:
+        for doubt in beyond(package, file, front, choice.point, settings):
+            print(f"warning: {doubt}", file=sys.stderr)
         print(choice.line(front), file=sys.stderr, flush=True)
     return choice
 
 
-def _share(text: str) -> float:
-    """ "5%", "5 %" or "0.05" as a share."""
+def _end(scene: Any) -> float | None:
+    """Time that a scene is to simulate, s, where it says so."""
+    end = getattr(getattr(scene, "time", None), "end", None)
+    return None if end is None else float(end)
+
+
+def beyond(package: Package, file: Path, front: Front, point: FrontPoint, settings: Sequence[str]) -> list[str]:
+    """In what a run of a point leaves what its front was measured with: scene, settings, range of time."""
+    from porescale.common.schema.sections import open_scene, scene_as_dict
+    from porescale.common.studies.parameter_table import flat
+    from porescale.common.studies.trade_plan import read_plan
+
+    def keys(overrides: Sequence[str]) -> dict[str, Any]:
+        """The scene of the point with ``overrides``, a value for each key."""
+        words = (*point.settings, *overrides)
+        return dict(
+            flat(scene_as_dict(open_scene(file, package.scene(), quality=point.quality, overrides=words).scene))
+        )
+
+    over = front.over
+    if over is None and (file.parent / "trade.toml").is_file():
+        plan = read_plan(file, None)
+        over = plan.over.key if plan.over else None
+    now, then = keys(settings), keys(front.settings)
+    if front.scene is not None:  # the file may have changed since
+        base, today = dict(flat(front.scene)), dict(flat(_scene(package, file, front.settings)))
+        then |= {key: base.get(key) for key in base.keys() | today.keys() if base.get(key) != today.get(key)}
+    changed = sorted(key for key in now.keys() | then.keys() if now.get(key) != then.get(key))
+    changed = [key for key in changed if not key.startswith(FREE) and key not in ("time.end", over)]
+    made = []
+    if changed:
+        few = ", ".join(f"{key} = {now.get(key)}, there {then.get(key)}" for key in changed[:3])
+        more = f" and {len(changed) - 3} more" if len(changed) > 3 else ""
+        made.append(f"{front.file} was measured with another scene: {few}{more}; its errors are not those of this run")
+    end = now.get("time.end")
+    if isinstance(end, float) and end > 1.01 * point.time:
+        made.append(f"{front.file} was measured until {point.time:.3g} s, the run goes on to {end:.3g} s: its errors "
+                    "say nothing of later")  # fmt: skip
+    return made
+
+
+def _scene(package: Package, file: Path, settings: Sequence[str], quality: str | None = None) -> dict[str, Any]:
+    from porescale.common.schema.sections import open_scene, scene_as_dict
+
+    return scene_as_dict(open_scene(file, package.scene(), quality=quality, overrides=settings).scene)
+
+
+def better_level(package: Package, file: Path, front: Front, error: float) -> str:
+    """The cheapest quality of a scene whose error is at most ``error``, as text; "" where there is none."""
+    from porescale.common.schema import scene_file
+    from porescale.common.studies.parameter_table import flat
+
+    levels = {name: dict(flat(_scene(package, file, (), name))) for name in scene_file.read(file).get("quality") or ()}
+    good = [point for point in front.every if point.error <= error]
+    for point in sorted([*good, *([front.reference] if front.reference else [])], key=lambda one: one.core_seconds):
+        its = dict(flat(_scene(package, file, point.settings, point.quality)))
+        name = next((name for name, level in levels.items() if level == its), None)
+        held = point is front.reference
+        what = "what errors are held against" if held else f"error {point.error:.2%}; but {point.but}"
+        if name or held:
+            words = f"--quality {name}" if name else " ".join(f"--set {shlex.quote(it)}" for it in point.settings)
+            return f"{words} is {what}, {point.core_seconds:.3g} core-seconds"
+    return ""
+
+
+@dataclass
+class _Record:
+    """What snapshots, rows, pictures and film take here: tried once, for the first point that is asked for.
+
+    Two short runs tell what is theirs alone from what each snapshot adds; where the first takes more than LITTLE of the
+    budget, it is the only one, and what the front has is scaled.
+    """
+
+    package: Package
+    file: Path
+    settings: Sequence[str]
+    budget: float | None
+    known: tuple[FrontPoint, float] | None = None
+
+    def of(self, point: FrontPoint) -> Callable[[float, float], float] | None:
+        """What gives the seconds for a run of a point from the simulated and wall-clock seconds of a step; None where
+        a scene does not say how long it is."""
+        whole = self._opened(point).scene
+        end, output = _end(whole), getattr(whole, "output", None)
+        return None if end is None or output is None else lambda step, wall: self._took(point, whole, step, wall)
+
+    def _took(self, point: FrontPoint, whole: Any, step: float, wall: float) -> float:
+        if self.known:
+            like, seconds = self.known
+            return seconds * (point.besides / like.besides if point.besides and like.besides else 1.0)
+        end, output, seconds = float(whole.time.end), whole.output, 0.0
+        snapshots = min(math.ceil(end / output.snapshot_interval), math.ceil(end / step))
+        rows = max(1, min(round(output.snapshot_interval / output.series_interval), int(SHORT / wall) // BLOCK, 50))
+        first = self._short(point, 1, rows, step) - rows * wall
+        if self.budget is not None and first > LITTLE * self.budget:
+            seconds = max(first, end / point.time * point.besides * wall / point.pace)
+        else:
+            warm, longer = (
+                self._short(point, count, rows, step) - count * rows * wall for count in (1, 1 + BLOCK)
+            )  # fmt: skip
+            one = max(longer - warm, 0.0) / BLOCK
+            seconds = max(warm - one, 0.0) + snapshots * one
+        self.known = point, seconds
+        return float(seconds)
+
+    def _short(self, point: FrontPoint, count: int, rows: int, step: float) -> float:
+        """Seconds of a run of ``count`` snapshot intervals of ``rows`` rows, of a step (s) each."""
+        from porescale.common.api.run_scene import card_of
+
+        each = {"time.end": count * rows * step, "output.snapshot_interval": rows * step,
+                "output.series_interval": step}  # fmt: skip
+        opened = self._opened(point, *(f"{key}={value!r}" for key, value in each.items()))
+        with tempfile.TemporaryDirectory() as made:
+            model, before = self.package.build(opened.scene), time.perf_counter()
+            card = card_of(self.package, opened)
+            self.package.drive(model, Path(made) / "run", opened.scene, card=card, resume=False, quiet=True)
+            return float(time.perf_counter() - before)
+
+    def _opened(self, point: FrontPoint, *more: str) -> Any:
+        from porescale.common.schema.sections import open_scene
+
+        words = (*point.settings, *self.settings, *more)
+        return open_scene(self.file, self.package.scene(), quality=point.quality, overrides=words)
+
+
+def share(option: str, text: str) -> float:
+    """ "5%", "5 %" or "0.05" of an option as a share."""
     number, sign, rest = text.partition("%")
     try:
         found = float(number) / (100 if sign else 1)
     except ValueError:
         found = math.nan
     if rest.strip() or not 0 < found < math.inf:
-        raise InputError(Fault("--error", text, "is not a positive share", "", "> 0", "write it as 5% or 0.05"))
+        raise InputError(Fault(option, text, "is not a positive share", "", "> 0", "write it as 5% or 0.05"))
     return found
 
 

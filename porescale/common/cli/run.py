@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,7 +16,7 @@ from porescale.common.cli.folders import named_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.machine import peak_bytes
+from porescale.common.core.machine import age, peak_bytes
 
 if TYPE_CHECKING:
     from porescale.common.record.drive import Outcome
@@ -39,7 +38,9 @@ def command(package: Package) -> Callable[..., int]:
         error: Annotated[
             str | None, Parameter(help="5%: the cheapest point of the scene's front that is as good")
         ] = None,
-        budget: Annotated[str | None, Parameter(help="3min: the best point of its front that takes no longer")] = None,
+        budget: Annotated[
+            str | None, Parameter(help="3min: the best point of its front whose command takes no longer")
+        ] = None,
         quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
     ) -> int:
         """Run a scene and write its run folder."""
@@ -59,7 +60,6 @@ def command(package: Package) -> Callable[..., int]:
         card = card_of(package, opened)
         if chosen is not None:
             card["picked"] = chosen.as_dict()
-        begun = time.perf_counter()
         warnings = package.report(opened.scene).warnings  # what contradicts itself is refused
         if resume:
             check_scene_resume(package, folder, card)
@@ -71,7 +71,7 @@ def command(package: Package) -> Callable[..., int]:
         if not quiet:
             print(summary(package.name, opened.name, folder, outcome))
             if chosen is not None:
-                print(f"expected {chosen.seconds:.3g} s, took {time.perf_counter() - begun:.3g} s")
+                print(f"expected {chosen.seconds:.3g} s, took {age():.3g} s, start-up and pictures included")
         return 0
 
     return run

@@ -43,6 +43,7 @@ def command(package: Package) -> Callable[..., int]:
         front.json, trade.csv, .md and .png; put front.json beside the scene, and `run --error 5%` or `--budget 3min`
         pick from it.  A study that was stopped goes on when called again.
         """
+        from porescale.common.schema.sections import open_scene, scene_as_dict
         from porescale.common.studies import trade_files
         from porescale.common.studies.runner import Campaign
         from porescale.common.studies.trade import Errors, front
@@ -77,6 +78,8 @@ def command(package: Package) -> Callable[..., int]:
         use_threads(threads)
         words = [package.name, "study", "trade", str(scene), *(["--plan", str(plan)] if plan else [])]
         about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
+        about["settings"], about["over"] = list(settings or ()), planned.over.key if planned.over else None
+        about["scene"] = scene_as_dict(open_scene(start, package.scene(), overrides=settings or ()).scene)
         about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in planned.quantity]
         about["references"] = errors.answers()
         if reference:

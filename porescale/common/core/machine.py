@@ -2,6 +2,7 @@
 
 import platform
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,13 @@ def memory_bytes() -> int:
     from psutil import virtual_memory
 
     return int(virtual_memory().total)
+
+
+def age() -> float:
+    """Wall-clock seconds since this process was started."""
+    import psutil
+
+    return max(time.time() - float(psutil.Process().create_time()), 0.0)
 
 
 def _cores() -> int | None:

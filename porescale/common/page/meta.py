@@ -36,10 +36,10 @@ def meta(run: Run, precision: Precision = FINE) -> dict[str, Any]:
     """
     card = run.card
     found: dict[str, Any] = {
-        "format": FORMAT, "name": run.name, "title": str(card["scene"].get("title") or run.name),
-        "package": str(card.get("package", run.program.name)), "outcome": run.outcome,
-        "problem": str(card.get("problem") or ""), "tables": names(run), "verdicts": verdicts(run),
-        "check": check(run), "again": again(run), "card": card, "maps": colour_maps(),
+        "format": FORMAT, "name": run.name, "folder": run.folder.resolve().name,
+        "title": str(card["scene"].get("title") or run.name), "package": str(card.get("package", run.program.name)),
+        "outcome": run.outcome, "problem": str(card.get("problem") or ""), "tables": names(run),
+        "verdicts": verdicts(run), "check": check(run), "again": again(run), "card": card, "maps": colour_maps(),
         "precision": {"bits": precision.bits, "every": precision.every, "thin": precision.thin,
                       "full": precision.full, "snapshots": len(run)},
     }  # fmt: skip

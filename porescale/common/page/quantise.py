@@ -83,9 +83,9 @@ def _codes(part: AnyArray, size: int) -> tuple[float, float, AnyArray]:
     there = np.isfinite(part)
     known = part[there]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
-    step = (high - low) / most or 1.0
+    step = (high - low) / most
     with np.errstate(invalid="ignore"):
-        code = np.rint((np.asarray(part, float) - low) / step)
+        code = np.rint((np.asarray(part, float) - low) / (step or 1.0))
     return low, step, np.where(there, code, most + 1).astype(f"<u{size}")
 
 

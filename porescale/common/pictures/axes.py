@@ -5,19 +5,17 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
-from matplotlib.colors import Normalize
 from matplotlib.patches import Patch
 
-from porescale.common.core.types import AnyArray
+from porescale.common.pictures.arrows import arrows
+from porescale.common.pictures.layout import draw_bar, fit_ticks, scaled
 from porescale.common.pictures.look import (
-    GRAIN,
+    PAPER,
     PLATE,
     RIM,
     WALL,
     Look,
-    Scale,
     Survey,
     length_unit,
     magnitude,
@@ -46,31 +44,48 @@ def draw(snapshot: Snapshot, look: Look, axes: Axes, *, bar: bool = True) -> Axe
     bar : a colour bar, or a legend of kinds, beside them.
     """
     found = survey([snapshot], look)
-    factor, unit = length_unit(found.view, look.plain)
-    left, right, bottom, top = (edge * factor for edge in found.view)
-    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    _, unit = length_unit(found.view, look.plain)
     axes.set_xlabel(f"x ({unit})" if unit else "x")
     axes.set_ylabel(f"y ({unit})" if unit else "y")
+    left, right, bottom, top = found.view
     time = time_text(snapshot.time, found.longest, look.plain)
     if right - left < NARROW * (top - bottom):
         axes.set_title(f"{look.title}\n{time}" if look.title else time, loc="left")
     else:
         axes.set_title(look.title, loc="left")
         axes.set_title(time, loc="right")
+    draw_inside(snapshot, found, axes)
+    root = axes.get_figure(root=True)
+    if root is not None and root.get_layout_engine() is not None:
+        root.draw_without_rendering()  # how large the axes are
+    if bar:
+        _keys(found, axes)
+    fit_ticks(axes.figure, [axes])
+    return axes
+
+
+def draw_inside(snapshot: Snapshot, found: Survey, axes: Axes) -> None:
+    """Draw a snapshot to scale into ``axes``, in the units of their labels."""
+    look = found.look
+    factor, _ = length_unit(found.view, look.plain)
+    left, right, bottom, top = scaled(found.view, factor)
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     _field(snapshot, found, axes, factor)
     cloud, shapes = look.drawn(snapshot), look.shaped(snapshot)
     if cloud is not None and len(cloud.position):
         _points(cloud, found, axes, factor)
     if shapes is not None and len(shapes.position):
         _shapes(shapes, found, axes, factor)
+    pointing = arrows(snapshot, found) * factor
+    if len(pointing):
+        axes.add_collection(
+            PolyCollection(list(pointing), facecolors=PAPER, edgecolors=RIM, linewidths=0.4), autolim=False
+        )
     lines = look.lines(snapshot) if callable(look.lines) else look.lines
     if len(lines):
         axes.add_collection(LineCollection(list(np.array(lines) * factor), colors=WALL, linewidths=2.0), autolim=False)
     if look.marks and len(marks := look.marks(snapshot)):
         axes.add_collection(LineCollection(list(np.array(marks) * factor), colors=CRACK, linewidths=1.5), autolim=False)
-    if bar:
-        _keys(found, axes)
-    return axes
 
 
 def _field(snapshot: Snapshot, found: Survey, axes: Axes, factor: float) -> None:
@@ -78,7 +93,13 @@ def _field(snapshot: Snapshot, found: Survey, axes: Axes, factor: float) -> None
     grid, look = found.look.painted(snapshot), found.look
     if grid is None or found.field is None:
         return
-    place: dict[str, Any] = {"extent": [edge * factor for edge in grid.extent], "origin": "lower", "aspect": "equal"}
+    place: dict[str, Any] = {
+        "extent": [edge * factor for edge in grid.extent],
+        "origin": "lower",
+        "aspect": "equal",
+        "interpolation": "bilinear",
+        "interpolation_stage": "data",
+    }
     values = magnitude(grid.cells[look.field], 2)
     axes.imshow(values, cmap=found.field.map_name, vmin=found.field.low, vmax=found.field.high, **place)
     if look.walls in grid.cells:
@@ -95,7 +116,7 @@ def _points(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
     there = np.isfinite(cloud.position).all(axis=1)
     at, size = cloud.position[there] * factor, 2.0 * radius[there] * factor
     edges = {"edgecolors": RIM, "linewidths": 0.4} if discs else {"edgecolors": "none"}
-    own = _colours(cloud, found)[there] / 255
+    own = found.colours(cloud)[there] / 255
     dots = EllipseCollection(
         size, size, 0.0, units="xy", offsets=at, offset_transform=axes.transData, facecolors=own, **edges
     )
@@ -110,7 +131,7 @@ def _points(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
 
 def _shapes(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
     """Polygons, and segments as wide as they are thick."""
-    at, own = cloud.position * factor, _colours(cloud, found) / 255
+    at, own = cloud.position * factor, found.colours(cloud) / 255
     if "driven" in cloud.data:
         own = np.where(np.asarray(cloud.data["driven"])[:, None] != 0, np.array(rgb(PLATE)) / 255, own)
     if cloud.polygons is not None and len(cloud.polygons[0]) > 1:
@@ -131,32 +152,11 @@ def _shapes(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
         )
 
 
-def _colours(cloud: Cloud, found: Survey) -> AnyArray:
-    """Colours of points, (n, 3) of 0 to 255."""
-    look, name = found.look, found.look.colouring(cloud)
-    own = np.full((len(cloud.position), 3), rgb(GRAIN), float)
-    if name and look.kinds:
-        for kind, (_, colour) in look.kinds.items():
-            own[np.asarray(cloud.data[name]) == kind] = rgb(colour)
-    elif name and found.cloud is not None:
-        own = found.cloud.colours(magnitude(cloud.data[name], 1)).astype(float)
-    return own
-
-
 def _keys(found: Survey, axes: Axes) -> None:
     """A colour bar for what is coloured, and the kinds with their colours."""
-    for scale in (found.field, found.cloud):
-        if scale is not None:
-            _bar(scale, axes)
+    for k, scale in enumerate(it for it in (found.field, found.cloud) if it is not None):
+        beside = axes.inset_axes((1.02 + 0.2 * k, 0.0, 0.025, 1.0))
+        draw_bar(axes.figure, scale, beside, float(axes.xaxis.label.get_fontsize()))
     if found.look.kinds:
         patches = [Patch(facecolor=colour, label=label) for label, colour in found.look.kinds.values()]
         axes.legend(handles=patches, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, handlelength=1.0)
-
-
-def _bar(scale: Scale, axes: Axes) -> None:
-    """A colour bar as high as the axes; arrows at its ends: values beyond have the last colour."""
-    norm = Normalize(scale.low * scale.factor, scale.high * scale.factor)
-    extend = "max" if scale.low == 0 else "both"
-    inset = axes.inset_axes((1.02, 0.0, 0.025, 1.0))
-    bar = axes.figure.colorbar(ScalarMappable(norm, scale.map_name), cax=inset, extend=extend, extendfrac=0.025)
-    bar.set_label(scale.label)

@@ -4,12 +4,10 @@ import cv2
 import numpy as np
 
 from porescale.common.core.types import AnyArray
-from porescale.common.pictures.look import GRAIN, ONE, PAPER, PLATE, RIM, SHIFT, WALL, Survey, magnitude, rgb
+from porescale.common.pictures.arrows import arrows
+from porescale.common.pictures.look import ONE, PAPER, PLATE, RIM, SHIFT, WALL, Survey, magnitude, rgb
 from porescale.common.pictures.shapes import paint_marks, paint_shapes
 from porescale.common.record.model import Cloud, Grid, Snapshot
-
-SPECK = 4.0
-"""Arrows shorter than this many pixels are left out."""
 
 
 class Canvas:
@@ -44,9 +42,8 @@ class Canvas:
             self._cloud(image, cloud)
         shapes = self.look.shaped(snapshot)
         if shapes is not None:
-            paint_shapes(image, shapes, self.pixels(shapes.position), self.per_x, self._colours(shapes))
-        if grid is not None and self.look.arrows:
-            self._arrows(image, grid)
+            paint_shapes(image, shapes, self.pixels(shapes.position), self.per_x, self.survey.colours(shapes))
+        self._arrows(image, snapshot)
         lines = self.look.lines(snapshot) if callable(self.look.lines) else self.look.lines
         for ends in lines:
             start, end = np.rint(self.pixels(np.array(ends, float)) * ONE).astype(int).tolist()
@@ -103,7 +100,7 @@ class Canvas:
         size = radius * self.per_x if discs else np.maximum(radius * self.per_x, 1.0)
         seen = np.isfinite(at).all(1) & (at > -size[:, None]).all(1)
         seen &= (at < [self.width, self.height] + size[:, None]).all(1)
-        colours = self._colours(cloud)[seen].tolist()
+        colours = self.survey.colours(cloud)[seen].tolist()
         centres, radii = np.rint(at[seen] * ONE).astype(int).tolist(), size[seen]
         rim, rim_colour = np.clip(0.08 * radii, 0.7, 2.0), rgb(RIM)
         whole, inner = (np.rint(it * ONE).astype(int).tolist() for it in (radii, radii - rim))
@@ -124,46 +121,12 @@ class Canvas:
         for start, end, width in zip(starts, ends, widths, strict=True):
             cv2.line(image, start, end, colour, width, cv2.LINE_AA, SHIFT)
 
-    def _colours(self, cloud: Cloud) -> AnyArray:
-        """Colours of values, (n, 3) uint8."""
-        name = self.look.colouring(cloud)
-        painted = np.full((len(cloud.position), 3), rgb(GRAIN), np.uint8)
-        if name and self.look.kinds:
-            for kind, (_, colour) in self.look.kinds.items():
-                painted[cloud.data[name] == kind] = rgb(colour)
-        elif name and self.survey.cloud is not None:
-            painted = self.survey.cloud.colours(magnitude(cloud.data[name], 1))
-        return painted
-
-    def _arrows(self, image: AnyArray, grid: Grid) -> None:
-        """Velocity arrows on a regular raster; one at the top of the colour range spans a raster cell."""
-        assert self.survey.field is not None
-        velocity = grid.cells[self.look.field]
-        if velocity.ndim != 3:
-            return
-        pitch = self.width / self.look.arrows
-        rows, columns = self._inside(grid)
-        down = np.arange(rows.start + pitch / 2, min(rows.stop, self.height), pitch).astype(int)
-        across = np.arange(columns.start + pitch / 2, min(columns.stop, self.width), pitch).astype(int)
-        along = np.stack([self._resampled(grid, velocity[..., axis])[np.ix_(down, across)] for axis in (0, 1)], -1)
-        along *= [0.9 * pitch / self.survey.field.high, -0.9 * pitch / self.survey.field.high]
-        length = np.hypot(along[..., 0], along[..., 1])
-        where = np.nonzero(length > SPECK)
-        for j, i in zip(*where, strict=True):
-            size = min(length[j, i], pitch)
-            shape = _arrow(np.array([across[i], down[j]]), along[j, i] / length[j, i], size)
-            outline = [np.rint(shape * ONE).astype(np.int32)]
-            cv2.fillPoly(image, outline, rgb(PAPER), cv2.LINE_AA, SHIFT)
-            cv2.polylines(image, outline, True, rgb(RIM), 1, cv2.LINE_AA, SHIFT)
-
-
-def _arrow(middle: AnyArray, along: AnyArray, length: float) -> AnyArray:
-    """Outline of an arrow, (7, 2) pixels, its width growing with its length."""
-    half, head = 0.045 * length + 0.6, 0.36 * length
-    profile = [(0.0, half), (length - head, half), (length - head, 3.2 * half), (length, 0.0)]
-    points = np.array([*profile, *((x, -y) for x, y in profile[2::-1])])
-    across = np.array([-along[1], along[0]])
-    return np.asarray(middle + (points[:, :1] - length / 2) * along + points[:, 1:] * across)
+    def _arrows(self, image: AnyArray, snapshot: Snapshot) -> None:
+        """Arrows of the velocity."""
+        shapes = arrows(snapshot, self.survey)
+        for shape in np.rint(self.pixels(shapes.reshape(-1, 2)).reshape(shapes.shape) * ONE).astype(np.int32):
+            cv2.fillPoly(image, [shape], rgb(PAPER), cv2.LINE_AA, SHIFT)
+            cv2.polylines(image, [shape], True, rgb(RIM), 1, cv2.LINE_AA, SHIFT)
 
 
 def _blend(image: AnyArray, share: AnyArray, colour: AnyArray | tuple[int, int, int]) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import av
+from PIL import Image
 
 from porescale.common.core.atomic import whole
 from porescale.common.core.types import AnyArray
@@ -33,8 +34,22 @@ def film(folder: Path | str, look: Look | None = None, *, rate: int | None = Non
 
 def film_of(run: Run, painter: Painter, stem: Path, rate: int | None = None) -> Path:
     """Paint every snapshot of a run into <stem>.mp4 (or .webm); returns its path.  rate : as in `film`."""
-    rate = rate or min(30, max(5, round(len(run) / WATCHABLE)))
+    rate = rate or rate_of(len(run))
     return write_film(stem, (painter.paint(snapshot) for snapshot in run.snapshots(painter.survey.look.cells)), rate)
+
+
+def rate_of(frames: int) -> int:
+    """Frames a second of a film that lasts about six seconds."""
+    return min(30, max(5, round(frames / WATCHABLE)))
+
+
+def write_gif(path: Path, images: Iterable[AnyArray], rate: int) -> Path:
+    """Write RGB images as a GIF that goes round, of 256 colours, whole; returns the path."""
+    frames = (Image.fromarray(image).quantize(256, dither=Image.Dither.NONE) for image in images)
+    first = next(frames)
+    with whole(path) as beside:
+        first.save(beside, format="gif", save_all=True, append_images=frames, duration=round(1000 / rate), loop=0)
+    return path
 
 
 def write_film(stem: Path, images: Iterable[AnyArray], rate: int) -> Path:

@@ -18,13 +18,19 @@ Lines = Sequence[Line] | Callable[[Snapshot], Sequence[Line]]
 Limits = tuple[float, float]
 View = tuple[float, float, float, float]
 
-SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
+SEQUENTIAL, DIVERGING, SECOND = "viridis", "RdBu_r", "magma"
 GRAIN, RIM, WALL, PLATE, PAPER = "#ece3cf", "#3b352b", "#565a61", "#c3c8d0", "#ffffff"
 SHIFT = 4
 """OpenCV coordinates in sixteenths of a pixel."""
 ONE = 1 << SHIFT
 SHARE = 99.5
 """Colours end at this percentile of all values: one outlier must not darken a film."""
+
+SAME = 1e-6
+"""Values that differ by this share of them are the same: a few of the smallest steps of the single precision in which
+snapshots are stored."""
+PREFIXES = ((1e-8, 1e9, "n"), (1e-5, 1e6, "µ"), (1e-1, 1e3, "m"), (1e4, 1.0, ""), (1e7, 1e-3, "k"), (1e10, 1e-6, "M"))
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass(frozen=True)
@@ -37,12 +43,13 @@ class Look:
     when they have one); kinds : value of ``colour`` -> (label, colour), for whole numbers such as materials;
     limits, cloud_limits : range of the colours (None: from the values, robustly);
     shapes : a second cloud, whose lines and polygons are drawn, coloured as the first;  marks : lines drawn on top in
-    red, a function of the snapshot, such as cracks;
-    walls : cell array holding a solid fraction, painted grey;  lines : segments ((x, y), (x, y)) m, or a
-    function of the snapshot;  arrows : velocity arrows across the picture, 0 none;  streamlines : an extra
-    still with them; dot : radius of a dot, m (None: about half the particles' spacing);  view : (left, right,
-    bottom, top), m; size : long side, pixels;  plain : places and times are numbers without units;
-    title, label (of the field), colour_map, cloud_map.
+    red, a function of the snapshot, such as cracks;  held : so many discs, the last of the cloud, are held or driven,
+    and grey as walls are;  walls : cell array holding a solid fraction, painted grey;  lines : segments
+    ((x, y), (x, y)) m, or a function of the snapshot;  arrows : velocity arrows across the picture, 0 none, of the
+    grid, or of dots;  streamlines : an extra still with them; dot : radius of a dot, m (None: about half the particles'
+    spacing);  view : (left, right, bottom, top), m; size : long side, pixels;  plain : places and times are numbers
+    without units;  density : kg/m³ of the fluid, round_off : share of a length a step, by which velocities and
+    pressures are known to be round-off;  title, label (of the field), colour_map, cloud_map.
     """
 
     grid: str = "fields"
@@ -54,6 +61,7 @@ class Look:
     cloud_limits: Limits | None = None
     shapes: str = ""
     marks: Callable[[Snapshot], Sequence[Line]] | None = None
+    held: int = 0
     walls: str = ""
     lines: Lines = ()
     arrows: int = 0
@@ -66,11 +74,13 @@ class Look:
     label: str = ""
     colour_map: str = ""
     cloud_map: str = ""
+    density: float = 0.0
+    round_off: float = 1e-12
 
     @property
     def cells(self) -> tuple[str, ...]:
         """The cell arrays that a picture needs."""
-        return tuple(name for name in (self.field, self.walls) if name)
+        return tuple(name for name in (self.field, self.walls, "velocity" if self.arrows else "") if name)
 
     def painted(self, snapshot: Snapshot) -> Grid | None:
         """The grid to paint, if the snapshot has it."""
@@ -96,7 +106,10 @@ class Look:
 
 @dataclass(frozen=True)
 class Scale:
-    """Colours of a range of values: 256 RGB rows, the range, and how it is labelled."""
+    """Colours of a range of values: 256 RGB rows, the range, and how it is labelled.
+
+    uniform : the value, where all are the same but for round-off; None where they are not.
+    """
 
     table: AnyArray
     low: float
@@ -104,6 +117,7 @@ class Scale:
     label: str
     factor: float
     map_name: str
+    uniform: float | None = None
 
     def colours(self, values: AnyArray) -> AnyArray:
         """RGB of values, (..., 3) uint8; what is not a number is white."""
@@ -125,11 +139,23 @@ def magnitude(values: AnyArray, axes: int) -> AnyArray:
     return values if values.dtype.kind == "f" else values.astype(np.float64)
 
 
-def scale(name: str, units: str, sample: AnyArray, limits: Limits | None, map_name: str, label: str) -> Scale:
+def scale(
+    name: str, units: str, sample: AnyArray, limits: Limits | None, map_name: str, label: str, noise: float = 0.0
+) -> Scale:
     """The scale for values like ``sample``: from zero for lengths of vectors and other positive values,
-    symmetric and diverging where both signs matter."""
+    symmetric and diverging where both signs matter; of one colour where they differ by round-off alone.
+
+    noise : values so small are round-off, in the units of the sample.
+    """
     sample = sample[np.isfinite(sample)]
+    least, most = (sample.min(), sample.max()) if sample.size else (0.0, 1.0)
     low, high = np.percentile(sample, [100 - SHARE, SHARE]) if sample.size else (0.0, 1.0)
+    uniform = None
+    if limits is None and most - least <= max(noise, SAME * max(abs(least), abs(most))):
+        uniform = 0.0 if max(abs(least), abs(most)) <= noise else float(0.5 * (least + most))
+        low, high, map_name = min(0.0, 2 * uniform), max(0.0, 2 * uniform) or float(not uniform), SEQUENTIAL
+    elif high - low <= max(noise, SAME * max(abs(low), abs(high))):
+        low, high = least, most  # what differs is in few places
     signed = low < 0 < high and min(-low, high) > 0.05 * max(-low, high)
     if limits is not None:
         low, high = limits
@@ -143,22 +169,36 @@ def scale(name: str, units: str, sample: AnyArray, limits: Limits | None, map_na
         high = low + (abs(low) or 1.0) * 1e-3
     chosen = map_name or (DIVERGING if signed else SEQUENTIAL)
     table = (matplotlib.colormaps[chosen](np.arange(256) / 255.0)[:, :3] * 255 + 0.5).astype(np.uint8)
-    factor, prefixed = _prefix(units, max(abs(low), abs(high)))
+    factor, prefixed = _prefix(units, max(abs(low), abs(high)) if uniform is None else abs(uniform))
     shown = label or ("speed" if name == "velocity" else name.replace("_", " "))
     text = f"{shown} ({prefixed})" if prefixed else shown
-    return Scale(table, float(low), float(high), text, factor, chosen)
+    return Scale(
+        table, float(low), float(high), text if uniform is None else f"{text}, uniform", factor, chosen, uniform
+    )
+
+
+def round_off(snapshot: Snapshot, look: Look, length: float) -> dict[str, float]:
+    """Unit -> size of values that are round-off: a ``length`` (m, of a cell or particle) a step, and the pressure of
+    waves as fast, times the look's share.  Empty before the first step."""
+    if not snapshot.step or not snapshot.time:
+        return {}
+    speed = length * snapshot.step / snapshot.time
+    share = look.round_off
+    return {"m/s": share * speed, "Pa": share * look.density * speed**2, "1/s": share * speed / length,
+            "m": share * length}  # fmt: skip
 
 
 def _prefix(units: str, largest: float) -> tuple[float, str]:
-    """Factor and unit that give handy numbers, for units that take a prefix."""
-    if units in ("", "1", "-"):
-        return 1.0, ""
-    if units not in ("m/s", "m", "Pa", "N", "J"):
-        return 1.0, units
-    for bound, factor, prefix in ((1e-5, 1e6, "µ"), (1e-2, 1e3, "m"), (1e4, 1.0, ""), (1e7, 1e-3, "k")):
-        if largest < bound:
-            return factor, prefix + units
-    return 1e-6, "M" + units
+    """Factor and unit that give handy numbers: a prefix where the unit takes one, else a power of ten."""
+    unit = "" if units in ("1", "-") else units
+    if not largest or (1e-1 <= largest < 1e4):
+        return 1.0, unit
+    if unit in ("m/s", "m", "Pa", "N", "J") and 1e-11 <= largest < PREFIXES[-1][0]:
+        return next((factor, prefix + unit) for bound, factor, prefix in PREFIXES if largest < bound)
+    if 1e-2 <= largest < 1e-1:
+        return 1.0, unit
+    power = math.floor(math.log10(largest))
+    return 10.0**-power, f"10{str(power).translate(RAISED)} {unit}".rstrip()
 
 
 def rgb(colour: str) -> tuple[int, int, int]:
@@ -186,7 +226,10 @@ def time_text(time: float, longest: float, plain: bool = False) -> str:
 
 @dataclass
 class Survey:
-    """Properties of all snapshots that are needed before the first is painted."""
+    """Properties of all snapshots that are needed before the first is painted.
+
+    fastest : speed, m/s, that an arrow of full length has.
+    """
 
     look: Look
     field: Scale | None = None
@@ -194,6 +237,20 @@ class Survey:
     view: View = (0.0, 1.0, 0.0, 1.0)
     dot: float = 0.0
     longest: float = 0.0
+    fastest: float = 0.0
+
+    def colours(self, cloud: Cloud) -> AnyArray:
+        """Colours of points, (n, 3) uint8: of the values, of the kinds, of discs that are held, or of a plain grain."""
+        name, count = self.look.colouring(cloud), len(cloud.position)
+        painted = np.full((count, 3), rgb(GRAIN), np.uint8)
+        if name and self.look.kinds:
+            for kind, (_, colour) in self.look.kinds.items():
+                painted[np.asarray(cloud.data[name]) == kind] = rgb(colour)
+        elif name and self.cloud is not None:
+            painted = self.cloud.colours(magnitude(cloud.data[name], 1))
+        if self.look.held and "radius" in cloud.data and cloud.lines is None:
+            painted[max(0, count - self.look.held) :] = rgb(PLATE)
+        return painted
 
 
 def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
@@ -201,7 +258,9 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
     found = Survey(look)
     values: list[AnyArray] = []
     points: list[AnyArray] = []
+    speeds: list[AnyArray] = []
     field_units, cloud_units, coloured_by = "", "", ""
+    noise: dict[str, float] = {}
     box = [math.inf, -math.inf, math.inf, -math.inf]
     for snapshot in snapshots:
         found.longest = max(found.longest, snapshot.time)
@@ -210,16 +269,22 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
             values.append(_thin(magnitude(grid.cells[look.field], 2)))
             field_units = grid.units.get(look.field, "")
             found.view = grid.extent
+            noise = round_off(snapshot, look, grid.spacing[0]) or noise
         for part in (look.shaped(snapshot), cloud):
             if part is not None and len(part.position) and look.colouring(part):
                 coloured_by = look.colouring(part)
                 points.append(_thin(magnitude(part.data[coloured_by], 1)))
                 cloud_units = part.units.get(coloured_by, "")
+        if look.arrows:
+            moving = [*(it.cells for it in [grid] if it), *(it.data for it in [cloud] if it)]
+            speeds += [_thin(magnitude(it["velocity"], it["velocity"].ndim - 1)) for it in moving if "velocity" in it]
         if cloud is None or not len(cloud.position):
             continue
         if "radius" not in cloud.data and not found.dot:
             found.dot = look.dot or 0.55 * _spacing(cloud.position)
         reach = np.broadcast_to(cloud.data.get("radius", found.dot), len(cloud.position))[:, None]
+        if grid is None:
+            noise = round_off(snapshot, look, 2 * float(np.median(reach))) or noise
         there = np.isfinite(cloud.position).all(1)
         if not there.any():
             continue
@@ -227,13 +292,17 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
         box = [min(box[0], edges[0]), max(box[1], edges[2]), min(box[2], edges[1]), max(box[3], edges[3])]
     if values:
         sample = np.concatenate(values)
-        found.field = scale(look.field, field_units, sample, look.limits, look.colour_map, look.label)
+        least = noise.get(field_units, 0.0)
+        found.field = scale(look.field, field_units, sample, look.limits, look.colour_map, look.label, least)
     elif math.isfinite(box[0]):
         margin = 0.03 * max(box[1] - box[0], box[3] - box[2])
         found.view = (box[0] - margin, box[1] + margin, box[2] - margin, box[3] + margin)
     if points and not look.kinds:
-        sample = np.concatenate(points)
-        found.cloud = scale(coloured_by, cloud_units, sample, look.cloud_limits, look.cloud_map, "")
+        sample, least = np.concatenate(points), noise.get(cloud_units, 0.0)
+        other = look.cloud_map or (SECOND if values else "")  # two quantities, two maps
+        found.cloud = scale(coloured_by, cloud_units, sample, look.cloud_limits, other, "", least)
+    if speeds and (fastest := float(np.nanpercentile(np.concatenate(speeds), SHARE))) > noise.get("m/s", 0.0):
+        found.fastest = fastest
     found.view = look.view or found.view
     return found
 

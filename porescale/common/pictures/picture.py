@@ -10,84 +10,69 @@ from typing import Any
 
 import cv2
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.canvas import Canvas
-from porescale.common.pictures.look import Look, Scale, Survey, View, length_unit, survey, time_text
+from porescale.common.pictures.layout import DPI, Style, screen, stage
+from porescale.common.pictures.look import Look, Survey, survey, time_text
 from porescale.common.record.model import Snapshot
 from porescale.common.record.open_run import Run, open_run
 
-DPI = 100
-LEFT, RIGHT, TOP, BOTTOM, BAR = 70, 18, 44, 58, 92
-"""Margins around the inside of a picture 1000 pixels wide, and the room of one colour bar."""
 CALM = 0.01
 """Share of the colours' range below which no streamline is drawn: they would follow round-off."""
 SURVEYED = 24
 """At most so many snapshots are looked at for the colours' range."""
 
+WIDER = 1.25
+"""How much longer a montage may be than a picture of one time."""
 FINER = 3
 """Panels of a montage are drawn this much finer and averaged: small discs stay round."""
+
+
+class Sheet:
+    """Paints snapshots beside each other with one survey, each sheet as (height, width, 3) uint8 RGB with even sides.
+
+    boxes : (x, y, width, height) of the inside of each panel, pixels;  names : above each, "" for none, with the time.
+    """
+
+    def __init__(self, found: Survey, names: Sequence[str], style: Style) -> None:
+        self.survey, self.dpi = found, style.dpi
+        longest = time_text(-found.longest, found.longest, found.look.plain)
+        self.names = [f"{name}, " if name else "" for name in names]
+        made = stage(found, [name + longest for name in self.names], style, blank=True)
+        self.full, self.boxes, self.font = made.full, made.boxes, made.font
+        self.canvas = Canvas(found, *made.boxes[0][2:])
+        self.background = _pixels(made.figure)
+
+    def paint(self, shown: Sequence[Snapshot], over_field: AnyArray | None = None) -> AnyArray:
+        """The whole picture of a snapshot for each panel; ``over_field`` as in :meth:`Canvas.draw`."""
+        image = self.background.copy()
+        for snapshot, name, (x, y, width, height) in zip(shown, self.names, self.boxes, strict=True):
+            image[y : y + height, x : x + width] = self.canvas.draw(snapshot, over_field)
+            _frame(image, (x, y, width, height))  # the axes' frame, over the edge of the inside
+            text = name + time_text(snapshot.time, self.survey.longest, self.survey.look.plain)
+            label = _text(text, self.font, self.dpi)
+            tall, wide = label.shape[:2]
+            lift = 2 if wide <= width else round(0.5 * self.font * self.dpi / 72)  # above a tick's label beside it
+            bottom, right = y - lift, max(x + width, wide)
+            np.minimum(part := image[bottom - tall : bottom, right - wide : right], label, out=part)
+        return image
 
 
 class Painter:
     """Paints snapshots that share a survey, each as (height, width, 3) uint8 RGB with even sides."""
 
     def __init__(self, found: Survey) -> None:
-        self.survey = found
-        self.unit = found.look.size / 1000
-        left, right, bottom, top = found.view
-        self.scales = [scale for scale in (found.field, found.cloud) if scale is not None]
-        aside = RIGHT + BAR * (len(self.scales) + bool(found.look.kinds))
-        free = np.array([found.look.size - (LEFT + aside) * self.unit, found.look.size - (TOP + BOTTOM) * self.unit])
-        per_metre = (free / [right - left, top - bottom]).min()
-        self.width = max(48, round((right - left) * per_metre))
-        self.height = max(48, round((top - bottom) * per_metre))
-        self.x = round(LEFT * self.unit)
-        self.y = round(TOP * self.unit)
-        self.full = (_even(self.x + self.width + aside * self.unit), _even(self.y + self.height + BOTTOM * self.unit))
-        self.canvas = Canvas(found, self.width, self.height)
-        self.background = self._background()
+        self.survey, self.sheet = found, Sheet(found, [""], screen(found.look.size))
+        (self.x, self.y, self.width, self.height), self.canvas = self.sheet.boxes[0], self.sheet.canvas
 
     def paint(self, snapshot: Snapshot, over_field: AnyArray | None = None) -> AnyArray:
         """The whole picture; ``over_field`` as in :meth:`Canvas.draw`."""
-        image = self.background.copy()
-        inside = image[self.y : self.y + self.height, self.x : self.x + self.width]
-        inside[:] = self.canvas.draw(snapshot, over_field)
-        corners = (self.x - 1, self.y - 1), (self.x + self.width, self.y + self.height)
-        cv2.rectangle(image, *corners, (40, 40, 40), 1)  # the axes' frame, over the edge of the inside
-        label = _text(time_text(snapshot.time, self.survey.longest, self.survey.look.plain), 11 * self.unit)
-        tall, wide = label.shape[:2]
-        bottom, right = self.y - round(3 * self.unit), max(self.x + self.width, wide)
-        image[bottom - tall : bottom, right - wide : right] = label
-        return image
-
-    def _background(self) -> AnyArray:
-        """Axes, title and bars without the inside."""
-        full_x, full_y = self.full
-        figure = Figure((full_x / DPI, full_y / DPI), dpi=DPI)
-        axes = _place(figure, self.full, self.x, self.y, self.width, self.height)
-        font = 10 * self.unit
-        _dress(axes, self.survey, font)
-        fits = max(0, int((self.width / self.unit - 110) / 8.0))
-        title = self.survey.look.title
-        if len(title) > fits:
-            title = title[: fits - 1] + "…" if fits > 8 else ""
-        axes.set_title(title, loc="left", fontsize=11 * self.unit, pad=8 * self.unit * 72 / DPI)
-        at = self.x + self.width + 18 * self.unit
-        for scale in self.scales:
-            _bar(figure, scale, (self.full, at, self.y, 16 * self.unit, self.height), font)
-            at += BAR * self.unit
-        if self.survey.look.kinds:
-            _legend(figure, self.survey.look, ((at - 8 * self.unit) / full_x, 1 - self.y / full_y), font)
-        return _pixels(figure)
+        return self.sheet.paint([snapshot], over_field)
 
     def streamlines(self, snapshot: Snapshot) -> AnyArray:
         """The picture with streamlines under the points, where anything moves: vortices can be seen."""
@@ -103,8 +88,8 @@ class Painter:
         axes = figure.add_axes((0, 0, 1, 1))
         lines: dict[str, Any] = {
             "color": "white",
-            "linewidth": 0.9 * self.unit,
-            "arrowsize": 0.8 * self.unit,
+            "linewidth": 0.9 * (self.survey.look.size / 1000),
+            "arrowsize": 0.8 * (self.survey.look.size / 1000),
             "density": 1.8,
         }
         axes.streamplot(x, y, velocity[..., 0], velocity[..., 1], **lines)
@@ -124,10 +109,14 @@ def painter_of(run: Run, look: Look) -> Painter:
     if not len(run):
         repair = "let it run until its first snapshot"
         raise InputError(Fault("run folder", str(run.folder), "no snapshots to paint", repair=repair))
-    every = max(1, -(-len(run) // SURVEYED))
-    chosen = sorted({*range(0, len(run), every), len(run) - 1})
     title = look.title or run.name
-    return Painter(survey((run.snapshot(k, look.cells) for k in chosen), replace(look, title=title)))
+    return Painter(survey((run.snapshot(k, look.cells) for k in surveyed(run)), replace(look, title=title)))
+
+
+def surveyed(run: Run) -> list[int]:
+    """Numbers of the snapshots that colours are taken from."""
+    every = max(1, -(-len(run) // SURVEYED))
+    return sorted({*range(0, len(run), every), len(run) - 1})
 
 
 def pictures(folder: Path | str, look: Look | None = None, **changes: Any) -> list[Path]:
@@ -159,37 +148,22 @@ def paint_last(folder: Path | str, name: str, look: Look) -> Path:
 def montage(painter: Painter, shown: Sequence[Snapshot]) -> AnyArray:
     """Several times side by side with one colour bar, (height, width, 3) uint8 RGB."""
     found = painter.survey
-    aspect = painter.width / painter.height
-    columns = min(range(1, len(shown) + 1), key=lambda n: abs(n * aspect / -(-len(shown) // n) - 1.4))
-    rows = -(-len(shown) // columns)
-    gap_x, gap_y, left, bottom, top = 16, 34, 66, 58, 62
-    aside = RIGHT + BAR * (len(painter.scales) + bool(found.look.kinds))
-    width = round(min(1.25 * found.look.size, 1400) - left - aside - (columns - 1) * gap_x) // columns
-    height = round(width / aspect)
-    full = (
-        _even(left + columns * width + (columns - 1) * gap_x + aside),
-        _even(top + rows * height + (rows - 1) * gap_y + bottom),
-    )
-    figure = Figure((full[0] / DPI, full[1] / DPI), dpi=DPI)
+    times = [time_text(it.time, found.longest, found.look.plain) for it in shown]
+    made = stage(found, times, screen(found.look.size, WIDER))
+    image = _pixels(made.figure)
+    width, height = made.boxes[0][2:]
     canvas = Canvas(found, FINER * width, FINER * height)
-    factor, _ = length_unit(found.view, found.look.plain)
-    extent = _scaled(found.view, factor)
-    for k, snapshot in enumerate(shown):
-        row, column = divmod(k, columns)
-        inside = cv2.resize(canvas.draw(snapshot), (width, height), interpolation=cv2.INTER_AREA)
-        x, y = left + column * (width + gap_x), top + row * (height + gap_y)
-        axes = _place(figure, full, x, y, width, height)
-        axes.imshow(inside, extent=extent, aspect="auto", interpolation="nearest")
-        _dress(axes, found, 9.5, x_label=k + columns >= len(shown), y_label=column == 0)
-        axes.set_title(time_text(snapshot.time, found.longest, found.look.plain), loc="right", fontsize=9.5, pad=4)
-    figure.text(left / full[0], 1 - 14 / full[1], found.look.title, fontsize=12, va="top", ha="left")
-    at, tall = left + columns * (width + gap_x) + 2, rows * height + (rows - 1) * gap_y
-    for scale in painter.scales:
-        _bar(figure, scale, (full, at, top, 16, tall), 9.5)
-        at += BAR
-    if found.look.kinds:
-        _legend(figure, found.look, ((at - 8) / full[0], 1 - top / full[1]), 9.5)
-    return _pixels(figure)
+    for snapshot, (x, y, _, _) in zip(shown, made.boxes, strict=True):
+        finer = canvas.draw(snapshot)
+        image[y : y + height, x : x + width] = cv2.resize(finer, (width, height), interpolation=cv2.INTER_AREA)
+        _frame(image, (x, y, width, height))
+    return image
+
+
+def _frame(image: AnyArray, box: tuple[int, int, int, int]) -> None:
+    """The line around the inside of a panel."""
+    x, y, width, height = box
+    cv2.rectangle(image, (x - 1, y - 1), (x + width, y + height), (40, 40, 40), 1)
 
 
 def png(image: AnyArray) -> bytes:
@@ -199,48 +173,9 @@ def png(image: AnyArray) -> bytes:
     return bytes(content.tobytes())
 
 
-def _place(figure: Figure, full: tuple[int, int], x: float, y: float, width: float, height: float) -> Axes:
-    """Axes at pixels counted from the upper left corner."""
-    return figure.add_axes((x / full[0], 1 - (y + height) / full[1], width / full[0], height / full[1]))
-
-
-def _dress(axes: Axes, found: Survey, font: float, *, x_label: bool = True, y_label: bool = True) -> None:
-    """Limits and labels of the axes."""
-    factor, unit = length_unit(found.view, found.look.plain)
-    left, right, bottom, top = _scaled(found.view, factor)
-    axes.set(xlim=(left, right), ylim=(bottom, top))
-    axes.tick_params(labelsize=font, direction="out", labelbottom=x_label, labelleft=y_label)
-    inside = axes.get_window_extent()
-    axes.locator_params(axis="x", nbins=_ticks(inside.width, 90), min_n_ticks=2)
-    axes.locator_params(axis="y", nbins=_ticks(inside.height, 60), min_n_ticks=2)
-    if x_label:
-        axes.set_xlabel(f"x ({unit})" if unit else "x", fontsize=font)
-    if y_label:
-        axes.set_ylabel(f"y ({unit})" if unit else "y", fontsize=font)
-
-
-def _bar(figure: Figure, scale: Scale, where: tuple[tuple[int, int], float, float, float, float], font: float) -> None:
-    """A colour bar at pixels; arrows at its ends: values beyond have the last colour."""
-    axes = _place(figure, *where)
-    norm = Normalize(scale.low * scale.factor, scale.high * scale.factor)
-    extend = "max" if scale.low == 0 else "both"
-    bar = figure.colorbar(ScalarMappable(norm, scale.map_name), cax=axes, extend=extend, extendfrac=0.025)
-    bar.ax.tick_params(labelsize=font)
-    bar.ax.locator_params(nbins=_ticks(where[4], 50))
-    bar.set_label(scale.label, fontsize=font)
-
-
-def _legend(figure: Figure, look: Look, corner: tuple[float, float], font: float) -> None:
-    """The kinds and their colours."""
-    patches = [Patch(facecolor=colour, edgecolor="none", label=label) for label, colour in look.kinds.values()]
-    figure.legend(
-        handles=patches, loc="upper left", bbox_to_anchor=corner, fontsize=font, frameon=False, handlelength=1.0
-    )
-
-
-def _text(text: str, points: float) -> AnyArray:
+def _text(text: str, points: float, dpi: int) -> AnyArray:
     """Text in the axes' font on white, as a tight RGB image."""
-    figure = Figure((len(text) * points / 72, 1.6 * points / 72), dpi=DPI)
+    figure = Figure((0.75 * len(text) * points / 72, 1.6 * points / 72), dpi=dpi)
     figure.text(1.0, 0.25, text, fontsize=points, ha="right", va="baseline")
     return _pixels(figure)
 
@@ -250,19 +185,3 @@ def _pixels(figure: Figure, *, alpha: bool = False) -> AnyArray:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     return np.array(np.asarray(canvas.buffer_rgba())[..., : 4 if alpha else 3])
-
-
-def _ticks(pixels: float, each: float) -> int:
-    """How many intervals fit when each takes so many pixels."""
-    return int(np.clip(pixels / each, 2, 9))
-
-
-def _scaled(view: View, factor: float) -> View:
-    """The view in other units."""
-    left, right, bottom, top = view
-    return left * factor, right * factor, bottom * factor, top * factor
-
-
-def _even(pixels: float) -> int:
-    """The even number at or above: films need even sides."""
-    return 2 * int(np.ceil(pixels / 2))

@@ -1,9 +1,14 @@
 """What every scene can do as an object of Python: changed copies, where it comes from, equality by its values."""
 
+from __future__ import annotations
+
+from base64 import b64encode
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import pydantic
 
@@ -13,6 +18,9 @@ from porescale.common.schema.describe import as_html, in_lines
 from porescale.common.schema.messages import Key, dotted, every_key, nearest
 from porescale.common.schema.sections import Section, of_a_setting, scene_as_dict, try_scene
 from porescale.common.schema.written import Source, plain
+
+if TYPE_CHECKING:
+    from porescale.common.pictures.shown import Picture
 
 
 class SceneBase(Section):
@@ -100,6 +108,21 @@ class SceneBase(Section):
 
         return save(self, self._written, self._source.folder, Path(path), overwrite)
 
+    def picture(self) -> Picture:
+        """The built initial state to scale, with everything in the scene labelled and a lens on its resolution.
+
+        It is what `check --picture` draws, and displays in notebooks; ``.save(path)`` writes it.  A packing is settled
+        first, or read from the cache; that can take seconds.  InputError for what the scene must not request.
+        """
+        package = import_module(type(self).__module__.partition(".")[0])  # of this very class: its own builder
+        made: Picture = package.build(self).scene_picture()
+        return made
+
+    @property
+    def drawn_at_once(self) -> bool:
+        """Whether the picture takes seconds at the most."""
+        return True
+
     def __dir__(self) -> list[str]:
         """Sections, and what a scene can do; for completion, without what pydantic adds."""
         own = {name for kind in type(self).__mro__ if issubclass(kind, SceneBase) for name in vars(kind)}
@@ -112,8 +135,13 @@ class SceneBase(Section):
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
-        """A table for notebooks."""
-        return as_html(self, f"Scene {self.name!r}" if self.name else "Scene")
+        """A picture and a table for notebooks; the picture alone is left out where it takes long, or cannot be had."""
+        shown = "<p>picture() draws it</p>"
+        if self.drawn_at_once:
+            with suppress(InputError):  # `check` says what is wrong
+                content = b64encode(self.picture()._repr_png_()).decode()
+                shown = f"<img style='max-width:100%' src='data:image/png;base64,{content}'>"
+        return shown + as_html(self, f"Scene {self.name!r}" if self.name else "Scene")
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy, of pydantic: ``update`` is not checked; use `with_`."""

@@ -3,14 +3,18 @@
 front.json lies beside the scene it was measured for (`study trade` makes it).  What it keeps are core-seconds, of steps
 and besides, of another machine, which hardly depend on the load of that machine; and every point's pace, core-seconds
 of a step of a run that had just begun.  The same beginning is timed here before a prediction is given: its wall-clock
-pace over that of the front rescales the steps, start-up is what it took here.
+pace over that of the front rescales the steps; start-up, snapshots and pictures are what they take here.  Expected
+seconds are those of the whole command, from the start of its process.
+
+A point of which trade.toml says a ``but`` is none of the front for runs to which that applies.
 """
 
 import json
 import math
+import shlex
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +34,8 @@ class FrontPoint:
     """A point of the front.
 
     error, scatter : shares, errors : of each quantity;  core_seconds : of all steps, besides : of what else a run
-    does, pace : of a step as it began;  time : simulated, s;  but : what the errors do not show.
+    does, pace : of a step as it began;  time : simulated, s;  but : what the errors do not show of runs beyond
+    but_after, s.
     """
 
     label: str
@@ -44,6 +49,7 @@ class FrontPoint:
     besides: float = 0.0
     errors: Mapping[str, float] = field(default_factory=dict)
     but: str = ""
+    but_after: float = 0.0
 
     @property
     def whole(self) -> float:
@@ -53,34 +59,45 @@ class FrontPoint:
 
 @dataclass(frozen=True)
 class Front:
-    """Points from cheap to dear, where and when they were measured."""
+    """Points from cheap to dear, where, when and with what settings and scene (None: not kept) they were measured.
+
+    over : key that repeats differ in;  every : all points that have an error;  reference : what they were held against.
+    """
 
     file: Path
     machine: str
     date: str
     points: tuple[FrontPoint, ...]
+    settings: tuple[str, ...] = ()
+    scene: Mapping[str, Any] | None = None
+    over: str | None = None
+    every: tuple[FrontPoint, ...] = ()
+    reference: FrontPoint | None = None
 
 
 @dataclass(frozen=True)
 class Here:
     """A point as it begins on this machine.  wall, core : seconds and core-seconds of a step;  start : seconds until
-    the first;  end : time that is to be simulated, s, None for that of the front."""
+    the first;  end : time that is to be simulated, s, None for that of the front;  besides : seconds of all that is
+    no step, None where that of the front is scaled."""
 
     wall: float
     core: float
     start: float = 0.0
     end: float | None = None
+    besides: float | None = None
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A point, the seconds and core-seconds (of steps) that it should take on this machine, and how much slower this
-    machine is."""
+    """A point, the seconds of the whole command and core-seconds (of steps) that it should take on this machine, how
+    much slower this machine is, and how many times as long as in the front is simulated."""
 
     point: FrontPoint
     seconds: float
     slowness: float
     core_seconds: float = 0.0
+    longer: float = 1.0
 
     def as_dict(self) -> dict[str, Any]:
         """The fields that a run card keeps."""
@@ -90,11 +107,11 @@ class Choice:
 
     def line(self, front: Front) -> str:
         """Text with the chosen point and its expected cost and error."""
-        point = self.point
+        point, there = self.point, self.longer * self.point.whole
         return (
             f"picked {point.label}: error {percent(point.error)} ± {percent(point.scatter)}, about {self.seconds:.3g} s"
-            f" here ({self.slowness:.2g} times the {point.whole:.3g} core-seconds of {front.machine}, {front.date})"
-            + (f"; but {point.but}" if point.but else "")
+            f" in all here ({self.seconds / there:.2g} times the {there:.3g} core-seconds of {front.machine}, "
+            f"{front.date})" + (f"; but {point.but}" if point.but else "")
         )
 
 
@@ -103,8 +120,9 @@ def percent(share: float) -> str:
     return f"{100 * share:.2g} %"
 
 
-def read_front(scene: Path) -> Front:
-    """The front beside the scene file; InputError where there is none, or one that is damaged."""
+def read_front(scene: Path, end: float | None = None) -> Front:
+    """The front beside the scene file for runs until ``end`` (s; None: all remarks apply); InputError where there is
+    none, or one that is damaged."""
     file = scene.parent / FRONT
     repair = f"measure one: study trade {scene.parent}, and put its {FRONT} beside the scene; or name a --quality"
     if not file.is_file():
@@ -113,15 +131,35 @@ def read_front(scene: Path) -> Front:
         table = json.loads(file.read_text(encoding="utf-8"))
         if table["format"] != FORMAT:
             raise InputError(Fault(str(file), table["format"], "is of another format", "", str(FORMAT), repair))
-        points = [point_of(row) for row in table["points"] if row["on_front"] and row["error"] is not None]
-        machine = str(table["machine"]["processor"])
-        found = Front(file, machine, str(table["date"]), tuple(sorted(points, key=lambda one: one.core_seconds)))
+        every = tuple(point_of(row) for row in table["points"] if row["error"] is not None)
+        reference = point_of(table["reference"]) if table.get("reference") else None
+        settings = table.get("settings", _settings_in(str(table.get("command", ""))))
+        found = Front(
+            file, str(table["machine"]["processor"]), str(table["date"]), _unbeaten(every, end), tuple(settings),
+            table.get("scene"), table.get("over"), every, reference,
+        )  # fmt: skip
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         said = " ".join(f"{type(error).__name__}: {error}".split())[:80]
         raise InputError(Fault(str(file), None, f"is damaged ({said})", repair=repair)) from None
     if not found.points:
         raise InputError(Fault(str(file), None, "holds no point of a front", repair=repair))
     return found
+
+
+def _unbeaten(every: tuple[FrontPoint, ...], end: float | None) -> tuple[FrontPoint, ...]:
+    """The points whose remark does not apply, that no cheaper one is as good as, from cheap to dear."""
+    made: list[FrontPoint] = []
+    for point in sorted(every, key=lambda one: (one.core_seconds, one.error)):
+        applies = point.but and not (end is not None and end <= point.but_after)
+        if not applies and (not made or point.error < made[-1].error):
+            made.append(point)
+    return tuple(made)
+
+
+def _settings_in(command: str) -> list[str]:
+    """What the ``--set`` of a command line give."""
+    words = shlex.split(command)
+    return [words[k + 1] for k, word in enumerate(words[:-1]) if word == "--set"]
 
 
 def point_of(row: Mapping[str, Any]) -> FrontPoint:
@@ -135,19 +173,29 @@ def point_of(row: Mapping[str, Any]) -> FrontPoint:
     quality = None if row["quality"] is None else str(row["quality"])
     errors = {str(name): float(error) for name, error in row["errors"].items() if error is not None}
     return FrontPoint(
-        str(row["label"]), quality, tuple(map(str, row["settings"])), errors=errors, but=str(row["but"]), **numbers
-    )
+        str(row["label"]), quality, tuple(map(str, row["settings"])), errors=errors, but=str(row["but"]),
+        but_after=float(row.get("but_after", 0.0)), **numbers,
+    )  # fmt: skip
 
 
 Try = Callable[[FrontPoint], Here]
 """Begins a point on this machine."""
 
 
-def choose(front: Front, error: float | None, budget: float | None, try_here: Try) -> Choice:
+def choose(
+    front: Front, error: float | None, budget: float | None, try_here: Try, age: Callable[[], float] = lambda: 0.0
+) -> Choice:
     """The cheapest point whose error is at most ``error``; without one the best that ``budget`` (s) allows.
 
-    InputError where no point is good enough, or none is cheap enough.
+    age : gives the seconds that the command has taken so far.  InputError where no point is good enough, or none is
+    cheap enough.
     """
+
+    def here(point: FrontPoint) -> Choice:
+        """The point with what the command takes from here on."""
+        found = _here(point, try_here)
+        return replace(found, seconds=age() + found.seconds)
+
     if error is not None:
         good = [point for point in front.points if point.error <= error]
         if not good:
@@ -155,42 +203,51 @@ def choose(front: Front, error: float | None, budget: float | None, try_here: Tr
             least = f"{math.ceil(1000 * best.error) / 10:g}%"  # rounded up: what is named here is accepted
             problem, repair = "is below the best point measured", f"--error {least} takes {best.label}"
             raise InputError(Fault("--error", percent(error), problem, "", f">= {least}", repair))
-        found = _here(good[0], try_here)
+        found = here(good[0])
         if budget is not None and found.seconds > budget:
             problem = f"is not enough for an error of {percent(error)}: {found.point.label} takes {found.seconds:.3g} s"
             raise InputError(Fault("--budget", f"{budget:.3g}", problem, "s", repair="allow more of one of them"))
         return found
     assert budget is not None
-    cheapest = _here(front.points[0], try_here)
+    before = age()
+    cheapest = here(front.points[0])
     if cheapest.seconds > budget:
         problem = f"is not enough: {cheapest.point.label}, the cheapest point, takes {cheapest.seconds:.3g} s"
         raise InputError(Fault("--budget", f"{budget:.3g}", problem, "s", repair="allow more"))
-    likely = cheapest.seconds / front.points[0].whole
-    for point in sorted(front.points, key=lambda one: one.error):
-        if point.whole * likely > 2.0 * budget:  # far out of reach: not worth building
+    tried = age()  # what a try takes is of the budget, too
+    likely = (cheapest.seconds - before) / (cheapest.longer * front.points[0].whole)
+    for point in sorted(front.points[1:], key=lambda one: one.error):
+        left = budget - age() - (tried - before)
+        if cheapest.longer * point.whole * likely > 2.0 * left:  # far out of reach: not worth building
             continue
-        found = cheapest if point is front.points[0] else _here(point, try_here)
-        if found.seconds <= GENTLE * budget or point is front.points[0]:
+        found = here(point)
+        if found.seconds <= GENTLE * budget:
             return found
-    return cheapest
+    return replace(cheapest, seconds=cheapest.seconds + age() - tried)
 
 
 def _here(point: FrontPoint, try_here: Try) -> Choice:
     here = try_here(point)
     longer = 1.0 if here.end is None else here.end / point.time
     slowness, alone = here.wall / point.pace, max(here.wall, here.core) / point.pace  # what is besides has one thread
-    seconds = here.start + longer * (point.core_seconds * slowness + point.besides * alone)
-    return Choice(point, seconds, slowness, longer * point.core_seconds * here.core / point.pace)
+    besides = longer * point.besides * alone if here.besides is None else here.besides
+    seconds = here.start + longer * point.core_seconds * slowness + besides
+    return Choice(point, seconds, slowness, longer * point.core_seconds * here.core / point.pace, longer)
 
 
-def begun(build: Callable[[], Any], end: float | None = None) -> Here:
-    """What a model takes to be built and to begin: built twice, since the first time its kernels compile."""
+def begun(
+    build: Callable[[], Any], end: float | None = None, besides: Callable[[float, float], float] | None = None
+) -> Here:
+    """What a model takes to be built and to begin: built twice, since the first time its kernels compile.
+
+    besides : gives the seconds of all that is no step, from the simulated and the wall-clock seconds of a step.
+    """
     build()
     before = time.perf_counter()
     model = build()
     start = time.perf_counter() - before
     wall, core = pace_of(model)
-    return Here(wall, core, start, end)
+    return Here(wall, core, start, end, besides(model.time / model.step, wall) if besides else None)
 
 
 def pace_of(model: Any) -> tuple[float, float]:

@@ -11,23 +11,24 @@ from porescale.common.studies.trade import Traded
 FRONT = "front.json"
 NAME = "trade"
 FORMAT = 2
-Caveats = Mapping[tuple[str | None, tuple[str, ...]], str]
-"""What is to be said of points, by quality and settings."""
+Caveats = Mapping[tuple[str | None, tuple[str, ...]], tuple[str, float]]
+"""What is to be said of points, and of runs longer than what (s), by quality and settings."""
 
 
-def as_dict(one: Traded, but: str = "") -> dict[str, Any]:
-    """A point, JSON-able: infinite errors become null.  but : what its errors do not show."""
+def as_dict(one: Traded, but: str = "", but_after: float = 0.0) -> dict[str, Any]:
+    """A point, JSON-able: infinite errors become null.  but : what its errors do not show of runs beyond but_after."""
     made = {key: value for key, value in vars(one).items() if key not in ("point", "error", "errors", "scatter")}
     return made | {
         "name": one.point.name, "quality": one.point.quality, "settings": list(one.point.settings),
         "error": files.finite(one.error), "scatter": one.scatter, "but": but,
+        "but_after": but_after,
         "errors": files.finite(one.errors),
     }  # fmt: skip
 
 
 def front_json(about: Mapping[str, Any], points: Sequence[Traded], caveats: Caveats) -> str:
     """``about`` (command, version, machine, date, …) and the points, a line each, so that two can be compared."""
-    lines = (as_dict(one, caveats.get((one.point.quality, one.point.settings), "")) for one in points)
+    lines = (as_dict(one, *caveats.get((one.point.quality, one.point.settings), ("", 0.0))) for one in points)
     return files.json_text(lines, {"format": FORMAT, **about}, "points")
 
 

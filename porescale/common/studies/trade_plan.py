@@ -59,10 +59,11 @@ class Settings(Section):
 
 class Variant(Settings):
     """A point of a knob.  label : in tables and pictures;  but : what the requested errors do not show, so that no
-    quality level is made of it."""
+    quality level is made of it, and none picks it;  but_after : simulated time from where on that is so."""
 
     label: str = pydantic.Field(min_length=1)
     but: str = ""
+    but_after: float = quantity("s", 0.0, ge=0, help="the remark holds for runs that go on beyond this")
 
 
 class Knob(Section):
@@ -142,9 +143,9 @@ class Plan(Section):
         points = named([Point(label, settings, quality) for (quality, settings), (_, label) in made.items()])
         return [(knob, label, point) for (knob, label), point in zip(made.values(), points, strict=True)]
 
-    def caveats(self) -> dict[tuple[str | None, tuple[str, ...]], str]:
-        """What is to be said of points, by quality and settings."""
-        return {self._over_base(it): it.but for knob in self.knob for it in knob.point if it.but}
+    def caveats(self) -> dict[tuple[str | None, tuple[str, ...]], tuple[str, float]]:
+        """What is to be said of points, and of runs longer than what (s), by quality and settings."""
+        return {self._over_base(it): (it.but, it.but_after) for knob in self.knob for it in knob.point if it.but}
 
     def repeats(self, point: Point) -> list[Point]:
         """One point for each value of ``over``, or the point itself."""

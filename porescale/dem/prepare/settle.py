@@ -32,6 +32,7 @@ from porescale.dem.discs import Discs, make_discs
 from porescale.dem.forces.walls import HIGH, LOW, VELOCITY, Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import kinetic_energy, max_overlap, unbalanced
+from porescale.dem.timestep import stable_step
 
 OVERLAP = 1e-3  # of a diameter: deepest overlap left by settling, so that the geometry is that of hard discs
 SOFTER = 16.0  # grains fall this much softer first, with steps 4 times as long, and then stiffen in place
@@ -42,7 +43,7 @@ DRAG = 0.3  # background damping in sqrt(g/d): grains fall at a few times their 
 ENERGY = 1e-8  # kinetic energy per grain over m g d that counts as rest
 BALANCE = 3e-3  # mean net force over mean weight that counts as rest
 CHUNK = 500  # steps between checks
-PATIENCE = 400  # chunks before settling gives up
+PATIENCE = 400  # chunks of steps that suit the mean grain, before settling gives up; more of shorter ones
 UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile, InputError)
 """What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""
 
@@ -109,22 +110,24 @@ def come_to_rest(
 
     energy : kinetic, per grain over m g d;  balance : mean net force over mean weight.
 
-    Raises PorescaleError when they are not after PATIENCE chunks of steps, Unstable when the state is
-    senseless.
+    Raises PorescaleError when they are not after PATIENCE chunks of steps, or the same time in the shorter steps
+    that small grains among large ones take, Unstable when the state is senseless.
     """
     discs = grains.discs
     diameter = 2.0 * float(discs.radius.mean())
     drag = DRAG * math.sqrt(gravity / diameter)
     dt = grains.stable_step(steps_per_contact=0.0)
     rest = energy * gravity * diameter * float(discs.mass.sum())
-    for _ in range(PATIENCE):
+    mean = float(discs.mass.mean()), float(discs.radius.mean())
+    chunks = math.ceil(PATIENCE * max(stable_step(grains.laws, *mean, steps_per_contact=0.0) / dt, 1.0))
+    for _ in range(chunks):
         grains.step(dt, weights, None, CHUNK, drag)
         grains.check()
         if kinetic_energy(discs) < rest and unbalanced(grains) < balance:
             break
     else:
         raise PorescaleError(
-            f"the packing did not come to rest in {PATIENCE * CHUNK} steps: kinetic energy "
+            f"the packing did not come to rest in {chunks * CHUNK} steps: kinetic energy "
             f"{kinetic_energy(discs) / rest * energy:.2g} m g d per grain, "
             f"net force {unbalanced(grains):.2g} of weight"
         )

@@ -5,7 +5,7 @@ import { Vectors } from "./vectors.js";
 import { View } from "./view.js";
 
 const COLOURS = { valid: "#ffd54a", invalid: "#4fc3ff", out: "#ffffff" };
-const WORDS = { valid: "valid", invalid: "invalid, replaced by what is around", out: "taken out" };
+const WORDS = { valid: "valid", invalid: "invalid, replaced by what is around", nothing: "invalid", out: "taken out" };
 const RATES = [0.5, 0.7, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 12];
 const APART = 13;
 const CLICK = 5;
@@ -345,7 +345,7 @@ class Review {
       const own = vectors.uncertainty[k];
       parts.push(`± ${shown(own, 2)} px${data.scaled ? ` (${shown(own * data.speed, 2)} ${data.unit})` : ""}`);
     }
-    parts.push(`correlation ${shown(vectors.correlation[k], 3)}`, WORDS[vectors.state(k)]);
+    parts.push(`correlation ${shown(vectors.correlation[k], 3)}`, WORDS[vectors.state(k) === "invalid" && !vectors.replaced[k] ? "nothing" : vectors.state(k)]);
     get("reading").textContent = parts.join(", ");
   }
 

@@ -17,3 +17,4 @@ class Homogenise(Section):
     strain: float = quantity("", 0.24, ge=0.03, le=1, help="logarithmic axial strain of a test")
     inertial_number: float = quantity("", 1e-3, ge=1e-6, le=1e-2, help="rate of a test, quasi-static to 1e-3")
     cells: int = pydantic.Field(12, ge=4, le=100, description="cells per hydraulic diameter of the flow")
+    ratio_error: float = quantity("", 0.01, ge=0, le=0.5, help="by how much grains.hydraulic_radius_ratio may be off")

@@ -26,6 +26,9 @@ class Permeability(Section):
 
     window: Window | None = None
     direction: Literal["x", "y"] = pydantic.Field("y", description="direction of the flow")
+    wanted: float | None = quantity(
+        "", None, gt=0, le=1e3, help="K/d² that the bed should have, d of the grains: check says at which lambda"
+    )
     spacing: float | None = quantity(
         "m", None, **LENGTH, help="lattice spacing of the measurement (default: the run's)"
     )

@@ -263,9 +263,6 @@ RADIUS = 7.3e-3
 """How much of its radius a disc 10 cells wide may look too big or small in one place: 2 % of a drag that goes as its
 power 2.75, as on arrays of solid fraction 0.2 (arrays.py)."""
 
-FILMS = (0.02, 0.03, 0.05)
-"""Gaps in radii of ten cells: a fifth to half a cell."""
-
 
 @VALIDATIONS.row(
     "coupling.towed_in_a_channel",
@@ -303,20 +300,6 @@ def wide_channel() -> Measured:
 def near_wall_row() -> Measured:
     """F/(mu U) along and towards the wall, T/(mu a² w), radius 10 cells, tau 0.6."""
     return Measured.relative(list(NEAR_WALL.values()), [near_wall(motion, relaxation_time=0.6) for motion in NEAR_WALL])
-
-
-@VALIDATIONS.row(
-    "coupling.films",
-    source="Jeffrey & Onishi 1981: a cylinder closes on a wall, F 4 pi mu V/(alpha - tanh alpha)",
-    because="16 %: of the law the lattice's own film is 0.22, 0.33 and 0.54 at 0.2, 0.3 and 0.5 cells (that of a gap"
-    " 0.35 to 0.26 cells wider), to which the correction adds 1 - g^(3/2), times 0.98 to 0.95 for the law's next term:"
-    " 1.11, 1.14 and 1.15; cut at a smaller gap, it would be as much too weak above",
-    tolerance=0.16,
-)
-def films() -> Measured:
-    """Force over the law's at gaps of 0.2, 0.3 and 0.5 cells with the correction below one cell, radius 10."""
-    found = [near_wall("towards", gap, lubrication=True) / jeffrey_onishi("towards", gap) for gap in FILMS]
-    return Measured.absolute([1.0] * len(found), found)
 
 
 @VALIDATIONS.row(

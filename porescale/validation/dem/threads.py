@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from porescale.common.compiled.jit import set_threads, threads
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
@@ -33,10 +34,14 @@ def dense_block(law: ContactLaw, energy: bool, seed: int = 2, shuffled: bool = T
 
 
 def difference_of_sweeps(law: ContactLaw, steps: int = 60) -> int:
-    """Numbers of the state that differ between the single loop and the sweep over blocks after ``steps``."""
-    one, other = dense_block(law, False), dense_block(law, True)
-    for grains in (one, other):
+    """Numbers of the state that differ between the single loop, on one thread, and the sweep over blocks, on all, after
+    ``steps``.
+    """
+    one, other, before = dense_block(law, False), dense_block(law, True), threads()
+    for grains, count in ((one, 1), (other, None)):
+        set_threads(count)
         grains.step(grains.stable_step(), count=steps)
+    set_threads(before)
     pairs = [
         (getattr(one.discs, name), getattr(other.discs, name)) for name in ("position", "velocity", "spin", "force")
     ]

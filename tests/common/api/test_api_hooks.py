@@ -18,7 +18,7 @@ from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, dry, grain, refusals, table, water, write
 
 pytestmark = [
-    pytest.mark.usefixtures("one_thread", "without_pictures"),
+    pytest.mark.usefixtures("without_pictures"),
     pytest.mark.filterwarnings("ignore::porescale.common.core.errors.PorescaleWarning"),
 ]
 

@@ -16,8 +16,6 @@ from tests.common.api.small import build, package_of, scene_of
 from tests.fingerprints.digest import fingerprint
 from tests.reference.scenes import dry, refusals, water
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
 KINDS = ("coupled", "dry", "tank", "soil", "levee")
 BAR = {"corners": [[0.006, 0.004], [0.008, 0.004], [0.008, 0.005]], "thickness": 0.0002, "density": 2500}
 

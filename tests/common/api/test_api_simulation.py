@@ -17,8 +17,6 @@ from tests.fingerprints.digest import fingerprint
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, column, dry, refusals, table, water, write
 
-pytestmark = pytest.mark.usefixtures("one_thread")
-
 END = 0.004
 SMALL_TANK = {
     "tank": {"width": 0.2, "height": 0.2},

@@ -7,7 +7,6 @@ from porescale.common.compiled.jit import kernel, prefetch, set_threads, threads
 from porescale.common.core.errors import InputError
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_threads_are_those_asked_for_or_refused_with_the_range():
     most = set_threads(None)
     assert threads() == most >= 2  # tests/conftest.py

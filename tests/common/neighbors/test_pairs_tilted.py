@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from porescale.common.compiled.jit import set_threads
 from porescale.common.neighbors import PairList, search
 from porescale.common.neighbors import pair_list as pairs
 from porescale.common.neighbors.cells import minimum_image, tilted_image, untilted
@@ -88,6 +89,7 @@ def test_pairs_of_one_group_are_left_out(compiled):
 @pytest.mark.parametrize(("first", "periodic"), [(0, False), (40, True), (79, False), (80, False)])
 def test_pairs_between_two_kinds_are_those_that_groups_leave(first, periodic, serial_below, monkeypatch):
     monkeypatch.setattr(pairs, "SERIAL_BELOW", serial_below)
+    set_threads(2)
     rng = np.random.default_rng(2)
     x, reach = rng.uniform(0.0, 1.0, (80, 2)), rng.uniform(0.03, 0.06, 80)
     box = (0.0, 0.0), (1.0, 1.0), (periodic, periodic)

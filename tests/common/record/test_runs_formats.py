@@ -140,7 +140,6 @@ def kept_run(tmp_path) -> Callable[[str], Path]:
     return unpacked
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_a_kept_run_goes_on_as_if_it_were_of_today(kept_run, tmp_path):
     run, later = kept_run("run_format_1"), "time.end=0.012"
     assert run_of(PORESCALE, run, run, "--resume", "--set", later) == 0
@@ -159,7 +158,6 @@ def test_a_kept_run_goes_on_as_if_it_were_of_today(kept_run, tmp_path):
     assert old.series[name][~later_rows] != pytest.approx(new.series[name][~later_rows], rel=1e-3)
 
 
-@pytest.mark.usefixtures("one_thread")
 def test_a_kept_run_without_a_key_of_today_says_which_value_is_as_before(kept_run, capsys):
     run, later = kept_run("continuum_run_format_1"), ("--resume", "--set", "time.end=0.03")
     before = {file: file.read_bytes() for file in run.iterdir()}

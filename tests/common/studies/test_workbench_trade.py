@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.common.cli.pick import _seconds, _share, pick
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from porescale.common.studies import trade_files
@@ -21,7 +20,6 @@ from porescale.common.studies.runner import Ended
 from porescale.common.studies.trade import Errors, Traded, distance, front
 from porescale.common.studies.trade_plan import Plan, read_plan
 from tests.reference.folders import ROOT
-from tests.reference.toy_package import TEMPLATE, TOY
 
 PLAN = """
 [over]
@@ -264,17 +262,38 @@ def test_a_pace_is_that_of_steps_without_the_first_ones():
     assert 0.0 < here.start < 1.0
 
 
-def test_shares_and_times_are_read_as_people_write_them():
-    assert _share("5%") == _share("5 %") == _share("0.05") == 0.05
-    assert _seconds("3min") == 180.0
-    assert _seconds("90") == 90.0
-    assert _seconds("2 h") == 7200.0
-    for wrong in ("", "5%%", "-1%", "nan", "inf", "0"):
-        with pytest.raises(InputError):
-            _share(wrong)
-    for wrong in ("", "3 apples", "-1 s", "0", "3 m"):
-        with pytest.raises(InputError):
-            _seconds(wrong)
+def test_the_age_of_the_command_counts_and_grows_with_every_try(measured_front):
+    clock = [3.0]
+
+    def slow_try(point: FrontPoint) -> Here:
+        """Half as fast, and seven seconds to find out."""
+        clock[0] += 7.0
+        return twice(point)
+
+    choice = choose(measured_front, 0.15, None, slow_try, lambda: clock[0])
+    assert choice.seconds == 10.0 + 20.0
+    clock[0] = 3.0
+    assert choose(measured_front, None, 60.0, slow_try, lambda: clock[0]).point.label == "0.1"  # 3 + 14 + 20
+    clock[0] = 3.0
+    late = choose(measured_front, None, 38.0, slow_try, lambda: clock[0])
+    assert (late.point.label, late.seconds) == ("0.2", 17.0 + 10.0)  # 37 s are beyond 0.95 · 38: the try is paid for
+
+
+def test_what_is_besides_is_what_it_takes_here_where_that_is_known(measured_front):
+    choice = choose(measured_front, 0.15, None, lambda point: replace(twice(point), end=1.0, besides=4.0))
+    assert choice.seconds == pytest.approx(0.5 * 18.0 + 4.0)  # half of the time simulated; pictures do not halve
+    assert f"{choice.seconds / 5.0:.2g} times the 5 core-seconds" in choice.line(measured_front)  # of half the time
+
+
+def test_a_point_whose_remark_applies_is_none_of_the_front(tmp_path):
+    scene = written(tmp_path, [traded(0.2, 5.0), traded(0.1, 10.0), traded(0.05, 8.0)])
+    table = json.loads((tmp_path / "front.json").read_text())
+    row = next(row for row in table["points"] if row["label"] == "0.05")
+    row |= {"but": "only until the impact", "but_after": 1.5}
+    (tmp_path / "front.json").write_text(json.dumps(table))
+    assert [point.label for point in read_front(scene).points] == ["0.2", "0.1"]
+    assert [point.label for point in read_front(scene, 2.0).points] == ["0.2", "0.1"]
+    assert [point.label for point in read_front(scene, 1.5).points] == ["0.2", "0.05"]  # which beats 0.1
 
 
 def test_a_curve_is_read_from_long_and_from_wide_tables():
@@ -302,18 +321,6 @@ def test_the_last_row_stands_for_half_a_row_more() -> None:
     columns = {"time (s)": np.array([0.0, 0.2, 0.399]), "front (m)": np.array([0.0, 2.0, 3.0])}
     assert measured(columns, {"column": "front (m)", "at": 0.4}) == 3.0  # a step that does not divide the end
     assert math.isnan(measured(columns, {"column": "front (m)", "at": 0.5}))  # over 0.0995 s, half a row
-
-
-def test_what_was_given_is_said_as_it_was_given(tmp_path, monkeypatch):
-    written(tmp_path, [traded(0.2, 5.0), traded(0.1041, 10.0)])
-    scene = tmp_path / "scene.toml"
-    scene.write_text(TEMPLATE)
-    monkeypatch.setattr("porescale.common.studies.front.begun", lambda build, end: Here(1.0, 1.0))
-    with pytest.raises(InputError, match=r"^--budget = '1 s': is not enough"):
-        pick(TOY, scene, None, "1 s", (), quiet=True)
-    with pytest.raises(InputError, match=r"^--error = '10.4%': is below .* \(allowed: >= 10.5%\); --error 10.5% takes"):
-        pick(TOY, scene, "10.4%", None, (), quiet=True)
-    assert pick(TOY, scene, "10.5%", None, (), quiet=True).point.error == 0.1041  # what the line names is accepted
 
 
 def test_errors_that_the_pages_ask_for_can_be_had():

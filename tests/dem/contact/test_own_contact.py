@@ -65,7 +65,7 @@ def test_hertz_of_a_user_is_the_built_in_one(folder: Path) -> None:
     theirs = heap(Hertz(2e7), 1500)
     one = heap(contact_named(folder, "hertz", modulus=2e7), 1500)
     assert np.abs(one.discs.position - theirs.discs.position).max() < far
-    other = heap(contact_named(folder, "nearly_hertz", modulus=2e7), 1500)  # must fail: the exponent by 1e-6
+    other = heap(contact_named(folder, "hertz", modulus=2e7 * (1 + 1e-6)), 1500)  # must fail: the modulus by 1e-6
     assert np.abs(other.discs.position - theirs.discs.position).max() > far
 
 

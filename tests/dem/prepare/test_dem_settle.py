@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from porescale.benchmarks.dem import BENCHMARKS
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, PorescaleError
 from porescale.dem.contact.linear import Linear
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
@@ -131,3 +131,21 @@ def test_bench_rows_count_disc_steps(monkeypatch, tmp_path):
     assert row.rate == pytest.approx(500 * 100 / row.seconds)
     with pytest.raises(InputError, match="float64"):
         list(BENCHMARKS.run(["dem"], size=100, dtype="float32"))
+
+
+def sizes_of_one_to_twenty():
+    """32 discs of 0.1 to 2 mm, evenly: 1 to 20, a mass ratio of 400."""
+    given = tuple(np.linspace(5e-5, 1e-3, 32).tolist())
+    return Pile((0.0, 0.0), 8e-3, len(given), 2.0 * sum(given) / len(given), 2500.0, seed=3, given=given)
+
+
+def test_sizes_of_one_to_twenty_come_to_rest(monkeypatch):
+    pile = sizes_of_one_to_twenty()
+    box = Box((0.0, 0.0), (pile.width, 0.1), top="open")
+    grains = Grains(pile.discs(), LAW, box)
+    settle.settle(grains, pile)
+    assert measure.unbalanced(grains) < settle.BALANCE
+    # Patience is counted in steps of the mean grain: of the smallest ones' it would be too short (the twin that fails).
+    monkeypatch.setattr(settle, "PATIENCE", settle.PATIENCE / 400)
+    with pytest.raises(PorescaleError, match="did not come to rest"):
+        settle.settle(Grains(pile.discs(), LAW, box), pile)

@@ -33,6 +33,7 @@ FLOWS = {
     "permeameter": ({"permeability", "flux at the outlet"}, "grains.hydraulic_radius_ratio=0.6",
                     {"permeability", "flux at the outlet"}),
     "settling_square": ({"speed"}, "grains.density=1350", {"speed"}),
+    "taylor_couette": (set(), "ring.diameter=0.041", {"torque on the cylinder", "torque on the ring"}),
     "towed_cylinder": (set(), "fluid.viscosity=1.1e-3", {"drag"}),
     "vortex_street": ({"lift coefficient"}, "fluid.viscosity=2e-3", {"lift coefficient", "period of the lift"}),
 }  # fmt: skip

@@ -80,6 +80,11 @@ def test_what_is_asked_must_make_sense(tmp_path, asks):
         code, lines = asks("homogenise", file, *words)
         assert code == 2, words
         assert any(said in line for line in lines), lines
+    file = write(tmp_path / "s.toml", SMALL)
+    for wrong in ("friction", "friction=0", "shape=2%"):
+        code, lines = asks("homogenise", file, "--until", wrong)
+        assert (code, len(lines)) == (2, 1)
+        assert "--until" in lines[0]
     code, lines = asks("homogenise", tmp_path / "none.toml")
     assert (code, len(lines)) == (2, 1)
 
@@ -109,6 +114,8 @@ def test_a_scene_becomes_a_material_that_the_continuum_reads(tmp_path, asks, cap
     assert porosity["values"] == values
     assert porosity["mean"] == pytest.approx(sum(values) / 2)
     assert porosity["standard_error"] == pytest.approx(abs(values[0] - values[1]) / 2)
+    assert "interval" not in porosity  # two packings have none
+    assert any("no interval" in doubt for doubt in made["made"]["doubts"])
     assert made["made"]["lambda"] == 0.8
     assert 3.5 < made["made"]["cells"] < 4.5
     assert made["pores"]["permeability"] > 0
@@ -123,4 +130,6 @@ def test_a_scene_becomes_a_material_that_the_continuum_reads(tmp_path, asks, cap
     # The continuum takes it over.
     (out / "scene.toml").write_text(CONTINUUM_SCENE)
     assert main(application(CONTINUUM), ["check", str(out)]) == 0
-    assert "measured on grains" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "measured on grains" in said
+    assert "2 packings give no interval" in said

@@ -1,9 +1,7 @@
 """A user's own law through the commands: run, card, resume, and what is wrong with its file."""
 
 import json
-import os
-import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +10,7 @@ import numpy as np
 import pytest
 
 from porescale import open_run
-from tests.reference.folders import ROOT
 from tests.reference.own_laws import write_laws
-from tests.reference.waiting import done
 
 LAW = """
 import porescale as ps
@@ -69,30 +65,23 @@ def states(run: Path) -> dict[str, bytes]:
     return found
 
 
-def porescale(*words: object) -> subprocess.CompletedProcess[str]:
-    """The command line, in the project's folder."""
-    env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    return done([sys.executable, "-m", "porescale", *words], cwd=ROOT, env=env)
-
-
-def test_a_run_names_its_law_and_goes_on_with_no_other(folder: Path) -> None:
+def test_a_run_names_its_law_and_goes_on_with_no_other(
+    folder: Path, porescale: Callable[..., int], complaints: Callable[[], list[str]]
+) -> None:
     run = ["run", folder, "--out", folder / "run", "--quiet"]
-    ended = porescale(*run)
-    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert porescale(*run) == 0
     card = json.loads((folder / "run" / "card.json").read_text(encoding="utf-8"))
     law = card["laws"]["contact.law"]
     assert card["scene"]["contact"]["law"] == law["law"] == "laws.py:sticky"
     assert law["sources"] == {"laws.py": LAW.format(force=FORCE)}
     rows = (folder / "run" / "series.csv").read_text(encoding="utf-8")
-    longer = porescale(*run, "--resume", "--set", "time.end=0.03")
-    assert longer.returncode == 0, longer.stdout + longer.stderr
+    assert porescale(*run, "--resume", "--set", "time.end=0.03") == 0
+    assert complaints() == []
     write_laws(folder, LAW.format(force=f"2.0 * {FORCE}"))
-    other = porescale(*run, "--resume", "--set", "time.end=0.04")
-    assert other.returncode == 2
-    assert len(other.stderr.splitlines()) == 1
-    assert f"contact.law = 'laws.py:sticky': has changed since the run began (hash {law['hash']}" in other.stderr
-    anew = porescale("run", folder, "--out", folder / "anew", "--quiet")  # the edited file, another result
-    assert anew.returncode == 0, anew.stdout + anew.stderr
+    assert porescale(*run, "--resume", "--set", "time.end=0.04") == 2
+    (line,) = complaints()
+    assert f"contact.law = 'laws.py:sticky': has changed since the run began (hash {law['hash']}" in line
+    assert porescale("run", folder, "--out", folder / "anew", "--quiet") == 0  # the edited file, another result
     assert (folder / "anew" / "series.csv").read_text(encoding="utf-8") != rows
 
 
@@ -105,19 +94,22 @@ def test_a_run_names_its_law_and_goes_on_with_no_other(folder: Path) -> None:
         ("p.stiffness * overlap - p.adhesion", "pulls with 0.2 N/m at an overlap of 2e-11 m"),
     ],
 )
-def test_what_is_wrong_with_the_file_is_one_line_and_exit_code_2(folder: Path, force: str, said: str) -> None:
+def test_what_is_wrong_with_the_file_is_one_line_and_exit_code_2(
+    folder: Path, force: str, said: str, porescale: Callable[..., int], complaints: Callable[[], list[str]]
+) -> None:
     write_laws(folder, LAW.format(force=force))
-    found = porescale("check", folder)
-    assert found.returncode == 2
-    assert said in found.stderr
-    assert len(found.stderr.splitlines()) == 1
+    assert porescale("check", folder) == 2
+    (line,) = complaints()
+    assert said in line
 
 
-def test_check_says_what_follows_from_it(folder: Path) -> None:
-    found = porescale("check", folder)
-    assert found.returncode == 0, found.stderr
+def test_check_says_what_follows_from_it(
+    folder: Path, porescale: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert porescale("check", folder) == 0
+    said = capsys.readouterr().out
     for word in ("laws.py:sticky", "contact.adhesion", "stiffest tangent", "contact time"):
-        assert word in found.stdout
+        assert word in said
 
 
 @pytest.mark.parametrize(
@@ -129,24 +121,27 @@ def test_check_says_what_follows_from_it(folder: Path) -> None:
     ],
 )
 def test_check_warns_of_an_energy_that_is_not_of_the_overlap_alone(
-    folder: Path, force: str, energy: bool, said: bool
+    folder: Path,
+    force: str,
+    energy: bool,
+    said: bool,
+    porescale: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     write_laws(folder, LAW.format(force=force))
-    found = porescale("check", folder, "--set", f"output.energy={str(energy).lower()}")
-    assert found.returncode == 0, found.stderr
-    words = " ".join((found.stdout + found.stderr).split())
+    assert porescale("check", folder, "--set", f"output.energy={str(energy).lower()}") == 0
+    words = " ".join(" ".join(capsys.readouterr()).split())
     assert ("laws.py:sticky at rest depends on the mass" in words) == said
 
 
-def test_a_run_that_was_interrupted_goes_on_to_the_bit(folder: Path) -> None:
+def test_a_run_that_was_interrupted_goes_on_to_the_bit(folder: Path, porescale: Callable[..., int]) -> None:
     # In the middle of the contact, from 6.4 to 9.2 ms.  The other one has a law that pulls a millionth more.
     few = ("--quiet", "--set", "output.series_interval=1e-3", "--set", "output.snapshot_interval=2e-3")
     runs = {"whole": ("time.end=0.012",), "halved": ("time.end=0.008", "time.end=0.012")}
     for name, parts in {**runs, "other": ("contact.adhesion=0.2000002",)}.items():
         for k, setting in enumerate(parts):
             words = ["--resume"] * (k > 0) + (["--set", "time.end=0.012"] if name == "other" else [])
-            ended = porescale("run", folder, "--out", folder / name, *few, "--set", setting, *words)
-            assert ended.returncode == 0, ended.stdout + ended.stderr
+            assert porescale("run", folder, "--out", folder / name, *few, "--set", setting, *words) == 0
     whole, halved, other = (open_run(folder / name).series.to_pandas() for name in ("whole", "halved", "other"))
     assert whole["largest overlap over diameter ()"][0.007:0.009].min() > 0.0
     assert whole.equals(halved)

@@ -21,7 +21,7 @@ from tests.reference.scenes import COLUMN, STEPS
 SNAPSHOTS = 7  # every 0.004 s from 0 to 0.024 s
 FILES = {
     "card.json", "checkpoint.h5", "series.csv", "fields.vtkhdf", "grains.vtkhdf",
-    "film.mp4", "final.png", "montage.png", "streamlines.png", "profile.csv", "packing.csv",
+    "film.mp4", "report.html", "final.png", "montage.png", "streamlines.png", "profile.csv", "packing.csv",
 }  # fmt: skip
 
 

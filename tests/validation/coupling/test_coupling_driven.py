@@ -12,7 +12,6 @@ from porescale.validation.coupling import driven
 from porescale.validation.coupling import setups as lab
 from tests.validation.tolerances import tolerance
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SPACING = 5e-4
 SQUARE = [[-1e-3, -1e-3], [1e-3, -1e-3], [1e-3, 1e-3], [-1e-3, 1e-3]]
 

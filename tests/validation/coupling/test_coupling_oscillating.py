@@ -1,7 +1,6 @@
 """The force on a disc that oscillates in a ring, and the linear theory that it is compared with."""
 
 import numpy as np
-import pytest
 from scipy.special import kv
 
 from porescale.validation.coupling.oscillating import (
@@ -15,8 +14,6 @@ from porescale.validation.coupling.oscillating import (
     scene,
 )
 from tests.validation.tolerances import tolerance
-
-pytestmark = pytest.mark.usefixtures("one_thread")
 
 
 def stokes(radius: float, omega: float) -> complex:

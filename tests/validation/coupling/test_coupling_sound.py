@@ -17,7 +17,6 @@ from porescale.validation.coupling.sound import SLOW, damping, turn
 from tests.reference.folders import CASES
 from tests.validation.tolerances import tolerance
 
-pytestmark = pytest.mark.usefixtures("one_thread")
 SPACING = 3.75e-4
 
 

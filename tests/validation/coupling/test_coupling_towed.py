@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from porescale.validation.coupling import moving, towed
+from porescale.validation.coupling import films, moving, towed
 from porescale.validation.coupling.towed import faxen, weighing
 from tests.reference.coupling.stokes_box import Box, Enclosed, point_forces
 from tests.validation.tolerances import tolerance
@@ -73,10 +73,15 @@ def test_a_disc_a_cell_higher_above_the_wall_is_told_apart():
     assert abs(found / towed.NEAR_WALL["towards"] - 1) > 2 * tolerance("coupling.cylinder_near_a_wall")
 
 
-@pytest.mark.parametrize("gap", towed.FILMS)
+@pytest.mark.parametrize("gap", films.AT_A_WALL)
 def test_without_the_correction_a_film_is_too_weak(gap):
     found = towed.near_wall("towards", gap) / towed.jeffrey_onishi("towards", gap)
     assert 1 - found > 2.5 * tolerance("coupling.films")
+
+
+def test_without_the_correction_a_film_between_discs_is_too_weak():
+    found = films.closing(0.05, films.PLACES[0], lubrication=False) / films.BETWEEN[0.05]
+    assert 1 - found > 2.5 * tolerance("coupling.films_between_discs")
 
 
 @pytest.mark.slow

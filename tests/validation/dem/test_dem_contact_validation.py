@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.special import jv
 
+from porescale.common.compiled.jit import set_threads
 from porescale.common.core.constants import GRAVITY
 from porescale.dem.contact import hertz
 from porescale.dem.contact.hertz import Hertz
@@ -106,6 +107,7 @@ def test_a_budget_without_friction_does_not_close():
 def test_the_same_discs_numbered_otherwise_have_other_bits():
     # Sums in another order differ: the sweep over blocks does not give the same bits by chance.
     law = law_at(0.1, **TANGENTIAL, tangential_damping=300.0)
+    set_threads(2)
     one = threads.dense_block(law, energy=False)
     back = np.arange(one.discs.count)[::-1]
     other = threads.dense_block(law, energy=False)

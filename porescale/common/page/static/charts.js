@@ -1,11 +1,14 @@
 /** Columns of tables as curves, with a cursor at the time of the frame. */
 
-import { shown, ticks } from "./colours.js";
+import { shown, tickTexts, ticks } from "./colours.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const SIZE = { width: 300, height: 150, left: 54, right: 10, top: 10, bottom: 24 };
 const STROKES = ["var(--first)", "var(--second)", "var(--third)", "var(--fourth)"];
 const ALONG = /^(x|y|along|arc|distance|place|position)\b/;
+
+const AT_PLACE = /^(.*) at (?:[xy] = )?(-?[\d.]+(?:e-?\d+)?) m$/;
+const PLACES = 6;
 
 /** An element with attributes and children. */
 export function make(tag, attributes = {}, ...children) {
@@ -56,11 +59,11 @@ export class Chart {
     }
   }
 
-  /** Show curves {x, y, label}; y may hold nulls. */
-  set(curves) {
+  /** Show curves {x, y, dots}; y may hold nulls.  all : numbers that the axis must hold besides. */
+  set(curves, all = []) {
     this.curves = curves;
     const xs = curves.flatMap((it) => [it.x[0], it.x.at(-1)]).filter(Number.isFinite);
-    const ys = curves.flatMap((it) => it.y).filter((it) => Number.isFinite(it));
+    const ys = [...curves.flatMap((it) => it.y), ...all].filter((it) => Number.isFinite(it));
     const low = ys.reduce((a, b) => Math.min(a, b), Infinity);
     const high = ys.reduce((a, b) => Math.max(a, b), -Infinity);
     const flat = !(high - low > 1e-12 * Math.max(Math.abs(low), Math.abs(high)));
@@ -88,19 +91,21 @@ export class Chart {
   draw() {
     this.svg.replaceChildren();
     const base = SIZE.height - SIZE.bottom;
-    for (const tick of ticks(...this.y, 3)) {
+    const [upward, across] = [ticks(...this.y, 3), ticks(...this.x, 4)];
+    const [upwardTexts, acrossTexts] = [upward, across].map(tickTexts);
+    for (const [k, tick] of upward.entries()) {
       const [, y] = this.to(0, tick);
       this.svg.append(drawn("line", { x1: SIZE.left, x2: SIZE.width - SIZE.right, y1: y, y2: y, class: "grid" }));
-      this.svg.append(drawn("text", { x: SIZE.left - 5, y: y + 4, "text-anchor": "end" }, shown(tick)));
+      this.svg.append(drawn("text", { x: SIZE.left - 5, y: y + 4, "text-anchor": "end" }, upwardTexts[k]));
     }
-    for (const tick of ticks(...this.x, 4)) {
+    for (const [k, tick] of across.entries()) {
       const [x] = this.to(tick, 0);
       this.svg.append(drawn("line", { x1: x, x2: x, y1: base, y2: base + 4, class: "tick" }));
-      if (x < SIZE.width - 40) this.svg.append(drawn("text", { x, y: base + 16, "text-anchor": "middle" }, shown(tick)));
+      if (x < SIZE.width - SIZE.right - 6.2 * this.axis.length - 3 * acrossTexts[k].length) this.svg.append(drawn("text", { x, y: base + 16, "text-anchor": "middle" }, acrossTexts[k]));
     }
     const axis = { x: SIZE.width - SIZE.right, y: base + 16, "text-anchor": "end" };
     this.svg.append(drawn("text", axis, this.axis));
-    this.curves.forEach(({ x, y }, k) => {
+    this.curves.forEach(({ x, y, dots = false }, k) => {
       let path = "";
       let pen = "M";
       for (let i = 0; i < x.length; i++) {
@@ -109,13 +114,13 @@ export class Chart {
           continue;
         }
         const [a, b] = this.to(x[i], y[i]);
-        path += `${pen}${a.toFixed(1)},${b.toFixed(1)}`;
-        pen = "L";
+        path += `${pen}${a.toFixed(1)},${b.toFixed(1)}${dots ? "h0" : ""}`;
+        pen = dots ? "M" : "L";
       }
-      const dashes = k ? { "stroke-dasharray": "5 3" } : {};
-      this.svg.append(drawn("path", { d: path, class: "curve", style: `stroke: ${STROKES[k % 4]}`, ...dashes }));
+      const dashes = k && !dots ? { "stroke-dasharray": "5 3" } : {};
+      this.svg.append(drawn("path", { d: path, class: dots ? "curve dots" : "curve", style: `stroke: ${STROKES[k % 4]}`, ...dashes }));
     });
-    this.cursor = drawn("line", { y1: SIZE.top, y2: base, class: "cursor" });
+    this.cursor = drawn("line", { y1: SIZE.top, y2: base, class: "cursor", visibility: "hidden" });
     this.svg.append(this.cursor);
   }
 
@@ -125,6 +130,7 @@ export class Chart {
     const [x] = this.to(Math.min(this.x[1], Math.max(this.x[0], place)), 0);
     this.cursor.setAttribute("x1", x);
     this.cursor.setAttribute("x2", x);
+    this.cursor.setAttribute("visibility", "visible");
     this.place = place;
     const values = this.curves.map((it) => it.y[nearest(it.x, place)]);
     const gap = values.length === 2 ? ` (Δ ${shown(values[0] - values[1])})` : "";
@@ -147,6 +153,9 @@ export class TableCharts {
 
   series(tables, go) {
     const [table] = tables;
+    const places = table.columns.map(({ name }) => AT_PLACE.exec(name));
+    const [first] = places.filter(Boolean);
+    if (first && places.filter((it) => it?.[1] === first[1]).length >= PLACES) this.alongPlaces(tables, places, first[1]);
     table.columns.slice(1).forEach(({ name, unit }, k) => {
       const chart = new Chart({ title: name, unit, axis: "t (s)", go });
       const found = tables.map((it) => [it, it.columns.findIndex((c) => c.name === name && c.unit === unit)]);
@@ -154,6 +163,21 @@ export class TableCharts {
       this.add(chart, `${name} ${unit}`);
       chart.column = k + 1;
     });
+  }
+
+  /** Columns "height at x = 0.1 m" and so on: one curve over the places at the time of the frame; each of them by itself
+   *  is folded away. */
+  alongPlaces(tables, places, title) {
+    const numbers = places.flatMap((it, k) => (it?.[1] === title ? [k] : []));
+    const chart = new Chart({ title, unit: tables[0].columns[numbers[0]].unit, axis: "place (m)" });
+    chart.tables = tables.filter((it) => it.columns.length === tables[0].columns.length);
+    chart.numbers = numbers;
+    const values = chart.tables.flatMap((it) => numbers.flatMap((k) => it.data[k])).filter(Number.isFinite);
+    chart.fixed = [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+    chart.where = numbers.map((k) => Number(places[k][2]));
+    this.add(chart, title);
+    this.folded = make("div", { class: "charts" });
+    this.element.append(make("details", { class: "wide" }, make("summary", {}, "each place over time"), this.folded));
   }
 
   /** A table with a row for each time and place: curves over a column of places, at the time of the frame. */
@@ -183,13 +207,17 @@ export class TableCharts {
   add(chart, words) {
     chart.words = words.toLowerCase();
     this.charts.push(chart);
-    this.element.append(chart.element);
+    (this.folded ?? this.element).append(chart.element);
   }
 
   /** Show the time of the frame. */
   at(time) {
     for (const chart of this.charts) {
-      if (chart.table) {
+      if (chart.tables) {
+        const rows = chart.tables.map((it) => nearest(it.data[0], time));
+        chart.set(chart.tables.map((it, n) => ({ x: chart.where, y: chart.numbers.map((k) => it.data[k][rows[n]]) })), chart.fixed);
+        chart.value.textContent = `t = ${shown(chart.tables[0].data[0][rows[0]])} s`;
+      } else if (chart.table) {
         const { table, along, k } = chart.table;
         const now = this.times[nearest(this.times, time)];
         const rows = table.data[0].flatMap((it, row) => (it === now ? [row] : []));

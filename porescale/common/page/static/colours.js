@@ -81,6 +81,19 @@ export function ticks(low, high, about = 4) {
   return found.length ? found : [low];
 }
 
+/** Ticks as texts, with as many digits as tell them apart. */
+export function tickTexts(list) {
+  const largest = Math.max(...list.map(Math.abs));
+  const step = list.length > 1 ? Math.abs(list[1] - list[0]) : largest || 1;
+  if (largest >= 1e6 || (largest < 1e-3 && largest > 0)) {
+    const digits = Math.max(0, Math.ceil(Math.log10(largest / step) - 1e-9));
+    return list.map((it) => (it === 0 || Math.abs(it) < 1e-9 * step ? "0" : it.toExponential(digits).replace("e+", "e")));
+  }
+  let decimals = Math.min(9, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
+  if (list.length > 1 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6) decimals += 1;
+  return list.map((it) => (Math.abs(it) < 1e-9 * step ? "0" : it.toFixed(decimals)));
+}
+
 /** Factor and unit in which a box is measured. */
 export function lengthUnit(view, plain) {
   if (plain) return [1, ""];

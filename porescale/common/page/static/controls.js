@@ -1,6 +1,6 @@
 /** What is shown of a run, and the controls that change it. */
 
-import { fromHex, gradient, css, mapNames, shown, ticks } from "./colours.js";
+import { fromHex, gradient, css, mapNames, tickTexts, ticks } from "./colours.js";
 import { make } from "./charts.js";
 import { robustRange } from "./values.js";
 
@@ -69,7 +69,7 @@ export class Controls {
     const list = make("select", { onchange: () => { this.showBars(); this.changed(); } }, make("option", { value: "" }, none));
     for (const name of names) {
       const options = Object.entries(blocks[name]).map(([key, it]) =>
-        make("option", { value: `${name}/${key}` }, `${key.replaceAll("_", " ")}${it.unit ? ` (${it.unit})` : ""}`));
+        make("option", { value: `${name}/${key}` }, `${names.length > 1 ? `${name}: ` : ""}${key.replaceAll("_", " ")}${it.unit ? ` (${it.unit})` : ""}`));
       if (plain) options.unshift(make("option", { value: `${name}/` }, `${name}, plain`));
       if (names.length > 1) list.append(make("optgroup", { label: name }, ...options));
       else list.append(...options);
@@ -175,10 +175,11 @@ export class Controls {
       if (named) continue;
       const limits = this.limitsOf(what);
       bar.paint.style.background = gradient(limits.map);
-      const marks = ticks(limits.low, limits.high, 3);
-      bar.scale.replaceChildren(...marks.map((it) => {
+      const marks = ticks(limits.low, limits.high, 5);
+      const texts = tickTexts(marks);
+      bar.scale.replaceChildren(...marks.map((it, k) => {
         const share = (100 * (it - limits.low)) / (limits.high - limits.low);
-        return make("span", { style: `left: ${Math.min(96, Math.max(4, share)).toFixed(1)}%` }, shown(it, 3));
+        return make("span", { style: `left: ${Math.min(96, Math.max(4, share)).toFixed(1)}%` }, texts[k]);
       }));
       bar.low.value = Number(limits.low.toPrecision(4));
       bar.high.value = Number(limits.high.toPrecision(4));

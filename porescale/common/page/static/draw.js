@@ -1,6 +1,6 @@
 /** A frame as a picture: cells, grains or particles to scale, and lines over them. */
 
-import { CRACK, GRAIN, RIM, css, fromHex, lengthUnit, paint, paintKinds, shown, ticks } from "./colours.js";
+import { CRACK, GRAIN, RIM, css, fromHex, lengthUnit, paint, paintKinds, tickTexts, ticks } from "./colours.js";
 import { arrows, chains, streamlines } from "./flow.js";
 import { Raster } from "./raster.js";
 import { cellAt } from "./values.js";
@@ -247,17 +247,20 @@ export class Picture {
     context.strokeRect(inner.left - 0.5, inner.top - 0.5, inner.width + 1, inner.height + 1);
     const [right_, base] = [inner.left + inner.width, inner.top + inner.height];
     Object.assign(context, { textAlign: "center", textBaseline: "top" });
-    for (const tick of ticks(left, right, Math.max(2, inner.width / (90 * ratio)))) {
+    const across = ticks(left, right, Math.max(2, inner.width / (90 * ratio)));
+    const upward = ticks(bottom, top, Math.max(2, inner.height / (60 * ratio)));
+    const [acrossTexts, upwardTexts] = [across, upward].map(tickTexts);
+    for (const [k, tick] of across.entries()) {
       const x = inner.left + (inner.width * (tick - left)) / (right - left);
       context.fillRect(x, base, ratio, 4 * ratio);
-      if (x < right_ - 24 * ratio) context.fillText(shown(tick), x, base + 6 * ratio);
+      if (x < right_ - 8 * ratio) context.fillText(acrossTexts[k], x, base + 6 * ratio);
     }
     context.fillText(`x${unit && ` (${unit})`}`, inner.left + 0.5 * inner.width, base + 21 * ratio);
     Object.assign(context, { textAlign: "right", textBaseline: "middle" });
-    for (const tick of ticks(bottom, top, Math.max(2, inner.height / (60 * ratio)))) {
+    for (const [k, tick] of upward.entries()) {
       const y = base - (inner.height * (tick - bottom)) / (top - bottom);
       context.fillRect(inner.left - 4 * ratio, y, 4 * ratio, ratio);
-      context.fillText(shown(tick), inner.left - 7 * ratio, Math.max(y, 8 * ratio));
+      context.fillText(upwardTexts[k], inner.left - 7 * ratio, Math.max(y, 8 * ratio));
     }
     context.save();
     context.translate(10 * ratio, inner.top + 0.5 * inner.height);

@@ -75,5 +75,5 @@ export function alongPoints(frame, choice, [x0, y0, x1, y1], dot) {
     if (along >= 0 && along <= length && off <= (radius ? radius[k] : 1.1 * dot)) found.push([along, values[k]]);
   }
   found.sort((a, b) => a[0] - b[0]);
-  return { x: found.map((it) => it[0]), y: found.map((it) => it[1]) };
+  return { x: found.map((it) => it[0]), y: found.map((it) => it[1]), dots: true };
 }

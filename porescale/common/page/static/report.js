@@ -1,17 +1,17 @@
 /** The page of a run: openReport(element, source) fills an element with all that a source has. */
 
-import { Chart, TableCharts, make } from "./charts.js";
+import { TableCharts, make, nearest } from "./charts.js";
 import { setMaps, shown } from "./colours.js";
 import { Controls } from "./controls.js";
 import { Picture } from "./draw.js";
 import { about, check, section, verdicts } from "./panels.js";
 import { Player } from "./player.js";
-import { nearest } from "./charts.js";
 import { Profile } from "./profile.js";
 import { Frame, cellAt, cellInFile } from "./values.js";
 import { View } from "./view.js";
 
 const KEPT = 24;
+const POINT = "point at the picture for values";
 
 /** A run behind its source, with the frames that were read last. */
 class Run {
@@ -40,12 +40,15 @@ export async function openReport(element, source) {
   setMaps(runs[0].meta.maps);
   const report = new Report(element, runs);
   await report.start();
+  element.dataset.state = "ready";
   return report;
 }
 
 class Report {
   constructor(element, runs) {
     Object.assign(this, { element, runs, meta: runs[0].meta, tables: [], line: null, drawing: false, pointed: null });
+    const names = runs.map((it) => it.meta.name);
+    this.names = runs.map(({ meta }) => (names.filter((it) => it === meta.name).length > 1 ? meta.folder : meta.name));
   }
 
   async start() {
@@ -67,11 +70,11 @@ class Report {
   }
 
   heading() {
-    const { meta, runs } = this;
+    const { meta } = this;
     const ended = `${meta.outcome || "run"}${meta.problem ? `: ${meta.problem}` : ""}`;
     const { rows } = meta.verdicts;
     const passed = rows.filter((it) => it.passed).length;
-    const facts = [["run", runs.map((it) => it.meta.name).join(", ")], ["of", `${meta.package} ${meta.card.versions?.porescale ?? ""}`],
+    const facts = [["run", this.names.join(", ")], ["of", `${meta.package} ${meta.card.versions?.porescale ?? ""}`],
       ["ended", ended], ["frames", String(meta.times.length)], ["took", meta.card.seconds ? `${shown(meta.card.seconds, 3)} s` : ""],
       ["expected", rows.length ? `${passed} of ${rows.length}` : ""]];
     const list = make("dl", { class: "facts" }, ...facts.filter(([, it]) => it).map(([key, it]) =>
@@ -86,9 +89,9 @@ class Report {
     meta.marked = sample.marks.length > 0 || (await runs[0].frame(meta.times.length - 1)).marks.length > 0;
     this.area = make("canvas", { tabindex: 0, role: "img", "aria-label": `${meta.title}: picture of the frame; plus, minus and 0 zoom, shift and arrows point` });
     this.above = make("canvas", { class: "above", "aria-hidden": "true" });
-    this.said = make("output", { class: "hover", "aria-live": "polite" });
+    this.said = make("output", { class: "hover", "aria-live": "polite" }, POINT);
     this.picture = new Picture(this.area, meta);
-    this.controls = new Controls(meta, sample, runs.slice(1).map((it) => it.meta.name), () => this.redraw());
+    this.controls = new Controls(meta, sample, this.names.slice(1), () => this.redraw());
     this.player = new Player(meta.times, (i) => this.show(i));
     this.profile = new Profile((ends) => this.setLine(ends));
     const view = (this.view = new View(this.picture, this.area, this));
@@ -104,7 +107,7 @@ class Report {
   finder() {
     this.find = make("input", { type: "search", placeholder: "front, energy, force …", "aria-label": "columns to show", oninput: () => this.filter() });
     return make("p", { class: "finder" }, "Columns ", this.find, this.runs.length > 1 ? make("span", { class: "legend" },
-      ...this.runs.map((it, k) => make("span", { style: `border-color: var(--${["first", "second", "third", "fourth"][k % 4]})` }, it.meta.name))) : "");
+      ...this.names.map((name, k) => make("span", { style: `border-color: var(--${["first", "second", "third", "fourth"][k % 4]})` }, name))) : "");
   }
 
   filter() {
@@ -215,7 +218,7 @@ class Report {
     const found = point && this.drawn && this.picture.find(this.drawn, this.choice, ...point);
     this.mark(found);
     if (!found) {
-      this.said.textContent = point ? "" : "point at the picture for values";
+      this.said.textContent = POINT;
       return;
     }
     const { choice, drawn } = this;
@@ -250,9 +253,12 @@ class Report {
     const ratio = picture.ratio;
     if (above.width !== area.width || above.height !== area.height) Object.assign(above, { width: area.width, height: area.height });
     const context = above.getContext("2d");
-    context.setTransform(1, 0, 0, 1, 0, 0);
-    context.clearRect(0, 0, above.width, above.height);
+    context.reset();
     context.scale(ratio, ratio);
+    const { left, top, width, height } = picture.inner;
+    context.beginPath();
+    context.rect(left / ratio, top / ratio, width / ratio, height / ratio);
+    context.clip();
     Object.assign(context, { strokeStyle: "#d0263b", lineWidth: 2 });
     if (found?.grain >= 0) {
       const [x, y] = this.drawn.parts("clouds", this.choice.cloud, "position").map((it) => it[found.grain]);
@@ -299,9 +305,11 @@ class Report {
   /** Fit the picture to the width that there is. */
   resize() {
     const [left, right, bottom, top] = this.meta.view;
-    const width = Math.max(160, this.area.parentElement.clientWidth);
+    const room = Math.max(160, this.area.parentElement.clientWidth);
     const most = Math.max(240, 0.74 * window.innerHeight);
-    const height = Math.round(Math.min(most, Math.max(120, ((width - 60) * (top - bottom)) / (right - left) + 44)));
+    const shape = (right - left) / (top - bottom);
+    const height = Math.round(Math.min(most, Math.max(120, (room - 60) / shape + 44)));
+    const width = Math.round(Math.min(room, Math.max(300, (height - 44) * shape + 60)));
     for (const canvas of [this.area, this.above]) Object.assign(canvas.style, { width: `${width}px`, height: `${height}px` });
     if (this.picture.resize(width, height)) this.redraw();
   }

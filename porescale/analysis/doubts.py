@@ -1,0 +1,65 @@
+"""What is to be doubted of a soil measured on packings: said with its numbers, and by the continuum that takes them."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from porescale.analysis.material import UNITS, Known, elastic
+from porescale.common.core.statistics import LEAST
+
+USUAL = 4
+"""Packings below which an interval is wide: three have one of 2.5 standard errors of one packing, four of 1.6."""
+DRIFT = math.radians(0.5)
+"""Dilatancy angle below which volume counts as constant: half a per cent of volume over half of the strain."""
+ORDERED = math.radians(1.5)
+"""Half of the interval of a critical angle from where on friction coefficients may come in any order: angles of discs
+hardly grow with friction above 0.3, and a tenth of 15 degrees is as much as a doubling changes there."""
+INDEPENDENT = 5.0
+"""Independent values in the critical state below which a test is too short for a mean of its own."""
+HALF = 0.5
+"""Interval over mean above which a number that a continuum takes over is hardly known."""
+HANDED_OVER = ("peak friction angle", "critical friction angle", "stiffness", "permeability")
+
+
+def doubts(rows: Sequence[Mapping[str, float]], found: Mapping[str, Known]) -> list[str]:
+    """One line each, of the numbers ``rows`` of all packings and of what is ``found`` of them."""
+    made = []
+    for name in UNITS:
+        have = sum(math.isfinite(row.get(name, math.nan)) for row in rows)
+        if name not in found and any(name in row for row in rows):
+            made.append(f"{name} is absent: {len(rows) - have} of {len(rows)} packings do not show it")
+    if len(rows) < USUAL:
+        bar = "no interval" if len(rows) < LEAST else "a wide interval"
+        made.append(f"{len(rows)} packings give {bar}: raise homogenise.packings to {USUAL} or more")
+    if "stiffness" in found and not elastic(found):
+        ratio = found["Poisson's ratio"].text()
+        made.append(
+            f"stiffness {found['stiffness'].text()} and Poisson's ratio {ratio} are not those "
+            "of an elastic soil: its first loading yields, and a continuum takes neither of them"
+        )
+    for name in HANDED_OVER:
+        if name in found and found[name].interval > HALF * abs(found[name].mean):
+            made.append(f"{name} {found[name].text()} is hardly known: more packings, or larger ones")
+    return made + _critical(found)
+
+
+def _critical(found: Mapping[str, Known]) -> list[str]:
+    """Of the critical state."""
+    drift, angle, alone = (
+        found[name] for name in ("critical dilatancy angle", "critical friction angle", "independent critical values")
+    )
+    made = []
+    wide = drift.interval if math.isfinite(drift.interval) else 4.0 * DRIFT
+    if abs(drift.mean) > max(wide, DRIFT):
+        made.append(
+            f"volume still drifts, dilatancy angle {drift.text()}: raise homogenise.strain for a critical state"
+        )
+    elif wide > 4.0 * DRIFT:
+        made.append(f"whether volume still drifts is open, dilatancy angle {drift.text()}: more packings")
+    if alone.mean < INDEPENDENT:
+        made.append(f"a critical state has {alone.mean:.2g} independent values in a test: raise homogenise.strain")
+    if not angle.interval < ORDERED:
+        made.append(
+            f"critical friction angle {angle.text()}: too wide to order friction coefficients above 0.3, known to "
+            f"{math.degrees(ORDERED):.2g} degrees it would; `--until friction=5%` goes on"
+        )
+    return made
