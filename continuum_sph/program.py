@@ -93,6 +93,13 @@ def measure(run: Run, scene: Scene) -> dict[str, dict[str, list[float]]]:
     return measure_run(run, scene)
 
 
+def widget(run: Run) -> Any:
+    """A run in notebooks: its page, with all frames and tables."""
+    from porescale.common.watch.widget import widget as widget_of
+
+    return widget_of(run.folder, PROGRAM)
+
+
 PROGRAM = Program(
     name="continuum-sph",
     module="continuum_sph",
@@ -105,5 +112,6 @@ PROGRAM = Program(
     look=look_of,
     measured=("probe", "level"),
     measure=measure,
+    widget=widget,
     formerly=FORMERLY,
 )

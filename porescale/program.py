@@ -81,6 +81,13 @@ def measure(run: Run, scene: Scene) -> dict[str, dict[str, list[float]]]:
     return measure_run(run, scene)
 
 
+def widget(run: Run) -> Any:
+    """A run in notebooks: its page, with all frames and tables."""
+    from porescale.common.watch.widget import widget as widget_of
+
+    return widget_of(run.folder, PROGRAM)
+
+
 PROGRAM = Program(
     name="porescale",
     module="porescale",
@@ -93,4 +100,5 @@ PROGRAM = Program(
     look=look,
     measured=("probe", "flux", "line", "region"),
     measure=measure,
+    widget=widget,
 )

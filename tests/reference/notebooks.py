@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 import nbformat
 from nbclient import NotebookClient
 
+from porescale.common.core.html import WIDGET
 from tests.reference.folders import ROOT
 
 FOLDER = ROOT / "docs" / "notebooks"
@@ -31,12 +32,14 @@ def executed(path: Path, folder: Path) -> nbformat.NotebookNode:
 
 
 def kept(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
-    """What is stored: without times of cells, names of passing files, and pictures where the same is shown as HTML."""
+    """What is stored: without times, names of passing files, widgets, and pictures where the same is shown as HTML."""
+    notebook.metadata.pop("widgets", None)
     for cell in notebook.cells:
         cell.metadata.pop("execution", None)
         for output in cell.get("outputs", ()):
             if "text/html" in output.get("data", {}):
                 output.data.pop("image/png", None)
+                output.data.pop(WIDGET, None)
             if "text" in output:
                 output.text = PASSING.sub("", output.text)
     return notebook

@@ -10,7 +10,9 @@ from pathlib import Path
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
-from porescale.common.core.html import html_table
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.extras import installed
+from porescale.common.core.html import Html, html_table, in_kernel, widget_bundle
 from porescale.common.record import open_run as record
 from porescale.common.record.columns import TIME, WIDE, Columns, missing
 from porescale.common.record.model import Snapshot
@@ -259,6 +261,29 @@ class Run(record.Run):
     def _listed(self) -> str:
         """Tables in one line."""
         return shorten(f"tables: {', '.join(self.tables) or 'none'}", WIDE, placeholder=" …")
+
+    def widget(self) -> Any:
+        """The page of `report` in a notebook, with all frames and tables; it goes on while the run is written.
+
+        Needs anywidget (extra "widget"); with it Jupyter, VS Code and marimo show a run so by themselves.
+        """
+        self._require_own()
+        if self.program.widget is None:
+            raise InputError(Fault("widget", None, f"{self.program.name} has none", repair="take run.picture()"))
+        return self.program.widget(self)
+
+    def _has_widget(self) -> bool:
+        """Whether the run shows itself as a widget where one can be shown."""
+        there = self.own and bool(len(self) or self.tables)
+        return there and self.program.widget is not None and installed("anywidget")
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
+        """The widget, besides what the other methods give, in a kernel of Jupyter."""
+        return widget_bundle(self.widget()) if in_kernel() and self._has_widget() else {}
+
+    def _display_(self) -> Any:
+        """What marimo shows."""
+        return self.widget() if self._has_widget() else Html(self._repr_html_())
 
     def _repr_png_(self) -> bytes | None:
         return self.picture()._repr_png_() if len(self) and self.own else None

@@ -60,6 +60,7 @@ class Program:
     table : columns of a table of a run folder by its name, "series" for series.csv;
     measured : sections of a scene that can be measured on a finished run, by key;  measure : measures those of a scene
     (that of the run, with them in place of its own), the tables by name, each columns by name;
+    widget : shows a run in notebooks;
     formerly : tables like those of a scene, with what was done before keys were there whose defaults do something else.
     """
 
@@ -75,6 +76,7 @@ class Program:
     table: Callable[[Path, str], Mapping[str, AnyArray]] = run_table
     measured: Sequence[str] = ()
     measure: Callable[[Run, Any], Mapping[str, Mapping[str, Sequence[float]]]] | None = None
+    widget: Callable[[Run], Any] | None = None
     formerly: Mapping[str, Any] = field(default_factory=dict)
 
     def required(self, scene: Any) -> Any:

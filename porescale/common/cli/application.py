@@ -15,6 +15,7 @@ from porescale.common.cli.diagnostics import printed
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import InputError, PorescaleError
 from porescale.common.page import command as report
+from porescale.common.watch import command as watch
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
@@ -40,7 +41,7 @@ def application(package: Package) -> App:
         print_error=False,
         exit_on_error=False,
     )
-    for part in (run, check, show, report, measure, new, schema, cases, sweep, verify, bench, study):
+    for part in (run, check, show, report, watch, measure, new, schema, cases, sweep, verify, bench, study):
         app.command(part.command(package))
     app.command(completion.command(app), name="--install-completion")
     return app

@@ -1,11 +1,12 @@
 """Libraries that only some need: imported when asked for, with one clear line where they are not installed."""
 
 import importlib
+import importlib.util
 from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
 
-EXTRAS = {"pandas": "notebook", "xarray": "notebook", "pyvista": "notebook"}
+EXTRAS = {"pandas": "notebook", "xarray": "notebook", "pyvista": "notebook", "anywidget": "widget"}
 """Libraries, and the extra of this package that brings them."""
 
 
@@ -16,3 +17,8 @@ def extra(library: str) -> Any:
     except ModuleNotFoundError:
         repair = f"pip install 'porescale[{EXTRAS[library]}]'"
         raise InputError(Fault(library, None, "is not installed", repair=repair)) from None
+
+
+def installed(library: str) -> bool:
+    """Whether ``library`` can be imported; it is not."""
+    return importlib.util.find_spec(library) is not None

@@ -1,7 +1,33 @@
-"""Small HTML tables for notebooks."""
+"""What notebooks show: small HTML tables, and where widgets are shown."""
 
+import sys
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from html import escape
+from typing import Any
+
+WIDGET = "application/vnd.jupyter.widget-view+json"
+
+
+@dataclass(frozen=True, repr=False)
+class Html:
+    """HTML that notebooks display."""
+
+    text: str
+
+    def _repr_html_(self) -> str:
+        return self.text
+
+
+def in_kernel() -> bool:
+    """Whether this process is the kernel of a notebook of Jupyter."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return getattr(shell, "kernel", None) is not None
+
+
+def widget_bundle(widget: Any) -> dict[str, Any]:
+    """What Jupyter is given to show a widget."""
+    return {WIDGET: {"version_major": 2, "version_minor": 1, "model_id": widget.model_id}}
 
 
 def html_table(caption: str, head: Sequence[object], rows: Iterable[Sequence[object]]) -> str:

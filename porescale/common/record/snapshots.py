@@ -8,7 +8,7 @@ the joined files or (equal) in both.
 
 import os
 import shutil
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.common.record.vtkhdf import Frame
 
 PARTS = "parts"
+FramesOf = Callable[[Path], list[Frame]]
 DAMAGE = (OSError, KeyError, ValueError, RuntimeError, TypeError, AttributeError, IndexError)
 """Errors that reading a damaged file raises."""
 
@@ -64,22 +65,22 @@ def parts(folder: Path) -> dict[int, Path]:
     return {int(path.name): path for path in sorted(found) if path.name.isdigit()}
 
 
-def joined(folder: Path) -> dict[str, list[Frame]]:
+def joined(folder: Path, read: FramesOf = vtkhdf.frames_of) -> dict[str, list[Frame]]:
     """The frames of the joined files by name of the grid or cloud."""
-    return {path.stem: vtkhdf.frames_of(path) for path in sorted(Path(folder).glob("[!.]*.vtkhdf"))}
+    return {path.stem: read(path) for path in sorted(Path(folder).glob("[!.]*.vtkhdf"))}
 
 
-def catalogue(folder: Path) -> dict[int, dict[str, Frame]]:
+def catalogue(folder: Path, read: FramesOf = vtkhdf.frames_of) -> dict[int, dict[str, Frame]]:
     """Every snapshot of a run, joined or not: step -> name -> frame, ascending in time.
 
-    A snapshot that lacks one of the names (a kill while files were rewritten) is none.  InputError where a file is
-    damaged.
+    read : gives the frames of a file.  A snapshot that lacks one of the names (a kill while files were rewritten) is
+    none.  InputError where a file is damaged.
     """
     found: dict[int, dict[str, Frame]] = {}
     with damage_as_input_error(folder):
         for step, part in parts(folder).items():
-            found[step] = {name: frames[0] for name, frames in joined(part).items()}
-        for name, frames in joined(folder).items():
+            found[step] = {name: frames[0] for name, frames in joined(part, read).items()}
+        for name, frames in joined(folder, read).items():
             for frame in frames:
                 found.setdefault(frame.step, {})[name] = frame
     names = {name for entry in found.values() for name in entry}

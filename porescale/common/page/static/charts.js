@@ -59,7 +59,8 @@ export class Chart {
     }
   }
 
-  /** Show curves {x, y, dots}; y may hold nulls.  all : numbers that the axis must hold besides. */
+  /** Show curves {x, y, dots}, and colour and label where given; y may hold nulls.  all : numbers that the axis must
+   *  hold besides. */
   set(curves, all = []) {
     this.curves = curves;
     const xs = curves.flatMap((it) => [it.x[0], it.x.at(-1)]).filter(Number.isFinite);
@@ -105,7 +106,7 @@ export class Chart {
     }
     const axis = { x: SIZE.width - SIZE.right, y: base + 16, "text-anchor": "end" };
     this.svg.append(drawn("text", axis, this.axis));
-    this.curves.forEach(({ x, y, dots = false }, k) => {
+    this.curves.forEach(({ x, y, dots = false, colour, label = "" }, k) => {
       let path = "";
       let pen = "M";
       for (let i = 0; i < x.length; i++) {
@@ -117,8 +118,8 @@ export class Chart {
         path += `${pen}${a.toFixed(1)},${b.toFixed(1)}${dots ? "h0" : ""}`;
         pen = dots ? "M" : "L";
       }
-      const dashes = k && !dots ? { "stroke-dasharray": "5 3" } : {};
-      this.svg.append(drawn("path", { d: path, class: dots ? "curve dots" : "curve", style: `stroke: ${STROKES[k % 4]}`, ...dashes }));
+      const dashes = k && !dots && !colour ? { "stroke-dasharray": "5 3" } : {};
+      this.svg.append(drawn("path", { d: path, class: dots ? "curve dots" : "curve", "data-label": label, style: `stroke: ${colour ?? STROKES[k % 4]}`, ...dashes }));
     });
     this.cursor = drawn("line", { y1: SIZE.top, y2: base, class: "cursor", visibility: "hidden" });
     this.svg.append(this.cursor);
@@ -159,7 +160,7 @@ export class TableCharts {
     table.columns.slice(1).forEach(({ name, unit }, k) => {
       const chart = new Chart({ title: name, unit, axis: "t (s)", go });
       const found = tables.map((it) => [it, it.columns.findIndex((c) => c.name === name && c.unit === unit)]);
-      chart.set(found.filter(([, at]) => at >= 0).map(([it, at]) => ({ x: it.data[0], y: it.data[at] })));
+      chart.set(found.filter(([, at]) => at >= 0).map(([it, at]) => ({ ...it, x: it.data[0], y: it.data[at] })));
       this.add(chart, `${name} ${unit}`);
       chart.column = k + 1;
     });

@@ -8,7 +8,8 @@ export function section(id, title, ...children) {
   return make("section", { id, "aria-labelledby": `${id}-title` }, make("h2", { id: `${id}-title` }, title), ...children);
 }
 
-function table(head, rows, label) {
+/** A table that scrolls; head : texts or elements;  rows : its tr. */
+export function table(head, rows, label) {
   const top = make("tr", {}, ...head.map((it) => make("th", { scope: "col" }, it)));
   return make("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label },
     make("table", {}, make("thead", {}, top), make("tbody", {}, ...rows)));

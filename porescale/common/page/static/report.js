@@ -29,8 +29,13 @@ class Run {
   }
 
   async read(i) {
-    const first = i ? await this.frame(0) : null;
-    return new Frame(await this.source.frame(i), first);
+    try {
+      const first = i ? await this.frame(0) : null;
+      return new Frame(await this.source.frame(i), first);
+    } catch (error) {
+      this.frames.delete(i);
+      throw error;
+    }
   }
 }
 
@@ -60,7 +65,8 @@ class Report {
     await this.fillTables();
     element.append(verdicts(meta.verdicts), check(meta.check), ...about(meta));
     if (meta.times.length) {
-      element.ownerDocument.addEventListener("keydown", (event) => this.key(event));
+      const alone = element.getRootNode() === element.ownerDocument; // else one of many in a notebook
+      (alone ? element.ownerDocument : element).addEventListener("keydown", (event) => this.key(event));
       const again = () => this.resize();
       if (window.ResizeObserver) new ResizeObserver(again).observe(this.area.parentElement);
       window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
@@ -117,28 +123,31 @@ class Report {
   /** Charts of every table, those over time open. */
   async fillTables() {
     const names = this.meta.tables;
-    this.charts.replaceChildren();
-    this.tables = [];
-    if (!names.length) this.charts.append(make("p", {}, "The run folder holds no table."));
+    const [found, elements, before] = [[], [], this.tables];
+    if (!names.length) elements.push(make("p", {}, "The run folder holds no table."));
     for (const name of names) {
       const tables = await Promise.all(this.runs.map((it) => (it.meta.tables.includes(name) ? it.source.table(name) : null)));
       const charts = new TableCharts(tables, (time) => this.seekTime(time));
       const [{ kind, rows, every }] = tables;
       const held = every > 1 ? `, one row in ${every} shown` : "";
-      const open = kind === "series";
-      this.charts.append(make("details", { open }, make("summary", {}, make("b", {}, `${name}.csv`), ` ${rows} rows${held}`), charts.element));
-      this.tables.push({ name, charts });
+      const open = before.find((it) => it.name === name)?.charts.element.parentElement.open ?? kind === "series";
+      elements.push(make("details", { open }, make("summary", {}, make("b", {}, `${name}.csv`), ` ${rows} rows${held}`), charts.element));
+      found.push({ name, charts });
     }
+    this.tables = found;
+    this.charts.replaceChildren(...elements);
+    this.filter();
   }
 
   /** Read the source again, as after the run has gone on: new frames and rows; stays at the end if it was there. */
   async refresh() {
     const before = this.meta.times.length;
-    const fresh = await this.runs[0].source.meta();
-    for (const key of ["times", "steps", "tables", "outcome", "problem", "verdicts", "card"]) this.meta[key] = fresh[key];
+    Object.assign(this.meta, await this.runs[0].source.meta());
     this.element.querySelector("header").replaceWith(this.heading());
+    this.element.querySelector("#verdicts").replaceWith(verdicts(this.meta.verdicts));
     await this.fillTables();
     if (!this.player) return;
+    this.controls.showBars();
     this.player.times = this.meta.times;
     this.player.slider.max = Math.max(0, this.meta.times.length - 1);
     await this.player.seek(this.player.at >= before - 1 ? this.meta.times.length - 1 : this.player.at);
@@ -153,7 +162,7 @@ class Report {
     const second = mode ? this.runs[1 + Number(mode.split(" ")[1])] : null;
     const other = second && second.meta.times.length ? await second.frame(nearest(second.meta.times, frame.time)) : null;
     if (this.wanted !== i) return;
-    if (i + 1 < this.meta.times.length) run.frame(i + 1);
+    if (i + 1 < this.meta.times.length) run.frame(i + 1).catch(() => {}); // it is asked for again when it is shown
     Object.assign(this, { frame, other });
     this.redraw();
     for (const it of this.tables) it.charts.at(frame.time);
