@@ -35,6 +35,9 @@ class Packing(Section):
     seed: int = pydantic.Field(1, ge=0, description="seed of the random placement")
     settle: bool = pydantic.Field(True, description="let the grains settle dry before the run")
     settling_friction: float = quantity("", 0.3, **FRICTION, help="friction while preparing: little packs densely")
+    settling_rolling_friction: float = quantity(
+        "", 0.0, **FRICTION, help="friction of rolling while preparing, for looser packings; 0: that of the contact law"
+    )
     void_ratio: float | None = quantity("", None, gt=0, lt=1e3, help="pores over grains, instead of packing_fraction")
     grading: tuple[tuple[float, float], ...] = quantity(
         "m", (), help="grading curve, [diameter, percent finer by mass] from 0 to 100, instead of diameter"

@@ -16,8 +16,11 @@ SOFTEST = 1e-3
 """Strain under its own weight above which soil is so soft that its shape is not the scene's."""
 
 
-def soil_report(scene: Scene) -> Report:
-    """Resolution, stiffness, strength, steps and cost; warns of soil too soft for its weight."""
+def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Report:
+    """Resolution, stiffness, strength, steps and cost; warns of soil too soft for its weight.
+
+    bound : on the step, s;  more : what else a particle costs in a step, s.
+    """
     section, law = soil_section(scene), soil_law(scene)
     material, spacing = material_of(section), law.spacing
     count = len(soil_particles(scene)[0])
@@ -50,10 +53,11 @@ def soil_report(scene: Scene) -> Report:
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
     step = min(limits)
     out.row("longest step", step, "s", f"limited by {RULES[limits.index(step)]}")
-    steps = scene.time.end / step
+    steps = scene.time.end / min(step, bound)
     out.row("steps", round(steps))
     out.row("memory", BYTES * count / 2**20, "MiB")
-    out.row("expected time", steps * count / RATE, "s", f"at {RATE:.2g} particle-steps/s, one thread")
+    rate = 1.0 / (1.0 / RATE + more)
+    out.row("expected time", steps * count / rate, "s", f"at {rate:.2g} particle-steps/s, one thread")
     report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
     if strain > 10.0 * SOFTEST:

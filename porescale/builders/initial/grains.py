@@ -13,7 +13,7 @@ from porescale.builders.derive import Derived, grain_count
 from porescale.builders.initial.apply_sections import apply_sections
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.frames import Placed, placed_frames, with_corners
-from porescale.builders.initial.packing import compressed, radii_of
+from porescale.builders.initial.packing import compressed, radii_of, say_void_ratio
 from porescale.builders.initial.placed import by_hand, placed
 from porescale.builders.initial.rectangles import stand_ins, take_over
 from porescale.builders.initial.rock import rock_discs, rock_frames
@@ -65,6 +65,7 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Gra
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law)
     elif packing and packing.settle:
         grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene.rectangle, packing)])
+        say_void_ratio(packing, grains)
         if parts:
             grains = joined(grains, together(*parts))
     elif scene.grains and packing and packing.compress:
@@ -117,7 +118,7 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
         corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
         diameter=packing.diameter, density=MaterialPlan.of(scene).density(packing.material), spread=packing.size_spread,
         friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
-        given=() if radii is None else tuple(radii.tolist()),
+        given=() if radii is None else tuple(radii.tolist()), rolling=packing.settling_rolling_friction,
     )  # fmt: skip
     lighter = scene.fluid.density if scene.fluid else 0.0
     return prepare(

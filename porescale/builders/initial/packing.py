@@ -1,16 +1,24 @@
-"""Radii of a packing, and packings that are pressed together."""
+"""Radii of a packing, packings that are pressed together, and void ratios that settling did not reach."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
 
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, PorescaleWarning
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.grading import graded_radii, lognormal_radii
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
+from porescale.dem.grains import Grains
+from porescale.dem.measures.porosity import porosity, void_ratio
+from porescale.dem.measures.region import Region
 from porescale.dem.prepare.compaction import Compactor, Compressed, kept
 from porescale.scene.packing import Packing
+
+MISSED = 0.02
+"""Share by which the void ratio of a settled bed may miss the wanted one unmentioned: beds of some hundred grains
+scatter by as much."""
 
 
 def radii_of(packing: Packing) -> Floats | None:
@@ -38,8 +46,33 @@ def compressed(packing: Packing, density: float, periodic: tuple[bool, bool], la
     radius = radii_of(packing)
     assert radius is not None
     box = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
-    press = Compactor(*box, law, periodic, packing.settling_friction, density, packing.seed)
+    press = Compactor(*box, law, periodic, packing.settling_friction, density, packing.seed,
+                      packing.settling_rolling_friction)  # fmt: skip
     try:
         return kept(press, radius, packing.pressure)
     except InputError as error:
         raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None
+
+
+def settled_void_ratio(packing: Packing, grains: Grains) -> float:
+    """Void ratio of a bed that settled, between a tenth and seven tenths of its height: without floor and surface."""
+    discs = grains.discs
+    height = float(np.max(discs.position[:, 1] + discs.radius)) - packing.bottom
+    lower, upper = packing.bottom + 0.1 * height, packing.bottom + 0.7 * height
+    region = Region((packing.left, lower), (packing.left + packing.width, upper))
+    return void_ratio(porosity(region, discs.position, discs.radius, grains.box.period))
+
+
+def say_void_ratio(packing: Packing, grains: Grains) -> None:
+    """A PorescaleWarning where a wanted void ratio set the number of grains, and they settled to another."""
+    if packing.void_ratio is None:
+        return
+    found = settled_void_ratio(packing, grains)
+    if abs(found - packing.void_ratio) > MISSED * packing.void_ratio:
+        warnings.warn(
+            f"grains.packing.void_ratio = {packing.void_ratio:g} sets the number of grains; the bed settled to"
+            f" {found:.3g} (solid fraction {1 / (1 + found):.3g}): settling_friction and settling_rolling_friction"
+            " loosen it, compress = true reaches a void ratio exactly",
+            PorescaleWarning,
+            stacklevel=2,
+        )

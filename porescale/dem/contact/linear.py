@@ -152,6 +152,11 @@ class Linear:
         """This law with another friction coefficient."""
         return replace(self, friction=friction)
 
+    def with_rolling(self, friction: float, stiffness: float) -> "Linear":
+        """This law with another rolling friction and stiffness (N/m), damped as its normal spring is."""
+        damping = self.damping * math.sqrt(stiffness / self.stiffness)
+        return replace(self, rolling_friction=friction, rolling_stiffness=stiffness, rolling_damping=damping)
+
     def row(self) -> NDArray[np.float64]:
         """The law as kernels read it, (COLUMNS,) float64, see law.py."""
         return np.array([

@@ -62,7 +62,8 @@ class Compressed(NamedTuple):
 @dataclass(frozen=True)
 class Compactor:
     """How discs are compressed: in the rectangle ``lower`` to ``upper`` (m), periodic or between walls, under ``law``,
-    with ``friction`` between discs while they grow (walls without), density kg/m³, seed of the random start."""
+    with ``friction`` between discs while they grow (walls without), density kg/m³, seed of the random start;  rolling :
+    friction of rolling while they grow (0: that of the law)."""
 
     lower: tuple[float, float]
     upper: tuple[float, float]
@@ -71,6 +72,7 @@ class Compactor:
     friction: float = 0.0
     density: float = 2500.0
     seed: int = 0
+    rolling: float = 0.0
 
     def to_pressure(self, radius: Floats, pressure: float) -> Compressed:
         """Discs with sizes in the ratios of ``radius`` (n,) m, grown or shrunk until the mean stress is ``pressure``
@@ -84,7 +86,7 @@ class Compactor:
             highest = f"<= {DEEPEST * self.law.stiffness:.3g}"
             raise InputError(Fault("pressure", pressure, problem, "Pa", highest, repair))
         grains, _ = self._start(radius)
-        for law in (self.law.with_friction(self.friction), self.law):
+        for law in (self._preparing, self.law):
             grains.set_law(law, law.with_friction(0.0) if law is not self.law else law)
             self._hold(grains, pressure)
         return self._made(grains, radius)
@@ -105,7 +107,7 @@ class Compactor:
             problem = f"presses grains into each other by {deepest:.2g} of a diameter"
             repair = "lower it, or the friction while preparing"
             raise InputError(Fault("packing_fraction", round(made, 4), problem, "", f"< {made:.3g}", repair))
-        for law in (self.law.with_friction(self.friction), self.law):
+        for law in (self._preparing, self.law):
             grains.set_law(law, law.with_friction(0.0) if law is not self.law else law)
             self._rest(grains)
         return self._made(grains, radius)
@@ -114,8 +116,14 @@ class Compactor:
         """Discs in the rectangle under the law with the friction of preparation, walls without."""
         across, up = ("periodic" if it else "solid" for it in self.periodic)
         box = Box(self.lower, self.upper, across, across, up, up)
-        law = self.law.with_friction(self.friction)
+        law = self._preparing
         return Grains(make_discs(position, radius, self.density), law, box, wall_law=law.with_friction(0.0))
+
+    @property
+    def _preparing(self) -> Linear:
+        """The law while discs grow."""
+        law = self.law.with_friction(self.friction)
+        return law.with_rolling(self.rolling, law.tangential_stiffness) if self.rolling else law
 
     @property
     def _region(self) -> Region:

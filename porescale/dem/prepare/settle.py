@@ -54,6 +54,7 @@ class Pile:
 
     They are placed from ``corner`` (m) upwards over ``width`` (m) at ``fraction`` of area, with ``seed``,
     and settle under ``gravity`` (m/s^2) with ``friction``: little of it packs densely, much of it loosely.
+    rolling : friction of rolling while they settle, which packs more loosely than friction alone can.
     given : radii (count,) m instead of those that diameter and spread say; diameter is their mean then.
     """
 
@@ -68,6 +69,7 @@ class Pile:
     seed: int = 0
     gravity: float = GRAVITY
     given: tuple[float, ...] = ()
+    rolling: float = 0.0
 
     def top(self) -> float:
         """Upper edge of the rectangle in which discs are placed, m."""
@@ -100,7 +102,8 @@ def settling_law(pile: Pile) -> Linear:
     law = Linear.from_restitution(
         RESTITUTION, 0.5 * mass, stiffness, tangential_stiffness=SHEAR * stiffness, friction=pile.friction
     )
-    return dataclasses.replace(law, tangential_damping=SHEAR * law.damping)
+    law = dataclasses.replace(law, tangential_damping=SHEAR * law.damping)
+    return law.with_rolling(pile.rolling, SHEAR * stiffness) if pile.rolling else law
 
 
 def come_to_rest(
@@ -179,6 +182,8 @@ def stiffened(law: Linear, factor: float) -> Linear:
         damping=math.sqrt(factor) * law.damping,
         tangential_stiffness=factor * law.tangential_stiffness,
         tangential_damping=math.sqrt(factor) * law.tangential_damping,
+        rolling_stiffness=factor * law.rolling_stiffness,
+        rolling_damping=math.sqrt(factor) * law.rolling_damping,
     )
 
 

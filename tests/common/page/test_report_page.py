@@ -57,12 +57,10 @@ def run(folder):
 
 @pytest.fixture(scope="module")
 def written(run, tmp_path_factory):
-    """Its page."""
     return report([run], tmp_path_factory.mktemp("written") / NAME)
 
 
 def held(path: Path) -> dict[str, bytes]:
-    """What a page of one run holds, by name."""
     text = path.read_text(encoding="utf-8")
     index = json.loads(re.search(r'id="index">(.*?)</script>', text)[1])
     data = re.search(r'id="data">(.*?)</script>', text)[1]
@@ -70,7 +68,6 @@ def held(path: Path) -> dict[str, bytes]:
 
 
 def head(content: bytes) -> dict:
-    """What a frame says of itself."""
     return json.loads(content[4 : 4 + int.from_bytes(content[:4], "little")])
 
 
