@@ -156,6 +156,7 @@ export class Controls {
   }
 
   meanRadius() {
+    if (!this.boxes.chains) return 0;
     const values = this.sample?.clouds.grains ? this.sample.parts("clouds", "grains", "radius")[0] : [];
     return values.length ? values.reduce((a, b) => a + b, 0) / values.length : this.meta.look.dot || 0;
   }

@@ -84,12 +84,12 @@ export class Raster {
   }
 }
 
-/** A pixel between two: share of the second. */
+/** A pixel between two: share of the second, in 256ths; red and blue at once. */
 function mixed(first, second, share) {
   if (share >= 1) return second;
-  const part = (shift) => {
-    const low = (first >>> shift) & 255;
-    return (low + (((second >>> shift) & 255) - low) * share) & 255;
-  };
-  return ((255 << 24) | (part(16) << 16) | (part(8) << 8) | part(0)) >>> 0;
+  const b = (share * 256) | 0;
+  const a = 256 - b;
+  const outer = (((first & 0xff00ff) * a + (second & 0xff00ff) * b) >>> 8) & 0xff00ff;
+  const green = (((first & 0xff00) * a + (second & 0xff00) * b) >>> 8) & 0xff00;
+  return (0xff000000 | outer | green) >>> 0;
 }

@@ -97,9 +97,17 @@ export function decode(buffer, start, spec, count) {
     const low = spec.low[part];
     const step = spec.step[part];
     const values = size > 2 || spec.whole ? new Float64Array(count) : new Float32Array(count);
+    const at0 = part * count;
+    if (size === 2 && !spec.across && !spec.whole) {
+      for (let k = 0; k < count; k++) {
+        const code = bytes[at0 + k] + 256 * bytes[total + at0 + k];
+        values[k] = code === none ? NaN : low + step * code;
+      }
+      return values;
+    }
     let left = 0;
     for (let k = 0; k < count; k++) {
-      const place = part * count + k;
+      const place = at0 + k;
       let code = bytes[place];
       if (size > 1) code += bytes[total + place] * 256;
       if (size > 2) code += bytes[2 * total + place] * 65536 + bytes[3 * total + place] * 16777216;
