@@ -58,4 +58,4 @@ def look_of_scene(
         density=scene["water"]["density"],
         **more,
     )
-    return with_section(look, scene.get("look"))
+    return with_section(look, scene.get("look"), cells=False)

@@ -69,7 +69,7 @@ def look_of_scene(scene: dict[str, Any], name: str) -> Look:
         density=(fluid or {}).get("density") or 0.0,
         round_off=1e-4 if (fluid or {}).get("precision") == "float32" else 1e-12,
     )
-    return with_section(look, scene.get("look"))
+    return with_section(look, scene.get("look"), cells=fluid is not None)
 
 
 def _look_of_deck(name: str, deck: dict[str, Any]) -> Look:

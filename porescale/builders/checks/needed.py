@@ -35,6 +35,10 @@ def check_needed(scene: Scene) -> list[Fault]:
                   repair="0.8 opens the pores of a dense bed; 1 seals a bed at rest, since pores in two "
                          "dimensions do not connect; 1 is right for single grains")
         )  # fmt: skip
+    painted = ("velocity", "pressure", "solid_fraction", *scene.output.fields)
+    if scene.look and scene.look.field and scene.fluid and scene.look.field not in painted:
+        repair = "choose one of these, or record it with output.fields"
+        faults.append(Fault("look.field", scene.look.field, "is not recorded", "", ", ".join(painted), repair))
     if scene.fluid is None:
         given = {"probe": scene.probe, "line": scene.line, "flux": scene.flux, "loads": scene.loads,
                  "permeability": scene.permeability, "output.fields": scene.output.fields}  # fmt: skip

@@ -196,11 +196,18 @@ class Wanted:
         return picked
 
 
-def with_section(look: Look, section: Mapping[str, Any] | None) -> Look:
-    """``look`` with what the table [look] of a scene says, as on a run card."""
+def with_section(look: Look, section: Mapping[str, Any] | None, *, cells: bool = True) -> Look:
+    """``look`` with what the table [look] of a scene says, as on a run card.
+
+    cells : whether the scene has any; without them the field and its limits are those of the points, as of `Wanted`.
+    """
     if not section:
         return look
     given = {key: value for key, value in section.items() if value}
+    if not cells:
+        for key, of_points in (("field", "colour"), ("limits", "colour_limits")):
+            if key in given:
+                given.setdefault(of_points, given.pop(key))
     names = {"colour_limits": "cloud_limits"}
     made = replace(look, **{names.get(key, key): _tuples(value) for key, value in given.items()})
     if "field" in given:

@@ -120,7 +120,9 @@ def _figure(looked: Looked, chosen: list[list[int]], found: Survey, wanted: Want
     style = wanted.styled(len(shown), found.look)
     with rc_context(SETTINGS):
         snapshots = [run.snapshot(k, found.look.cells) for _, run, k in shown]
-        texts = [time_text(it.time, found.longest, found.look.plain) for it in snapshots]
+        texts = [
+            time_text(it.time, found.longest, found.look.plain).replace(" ", "\u00a0") for it in snapshots
+        ]  # whole
         headers = [f"{name}, {text}" if name else text for (name, _, _), text in zip(shown, texts, strict=True)]
         if style.lettered and len(headers) > 1:
             headers = [f"({chr(97 + k)}) {text}" for k, text in enumerate(headers)]

@@ -135,13 +135,17 @@ class SceneBase(Section):
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
-        """A picture and a table for notebooks; the picture alone is left out where it takes long, or cannot be had."""
+        """A table for notebooks."""
+        return as_html(self, f"Scene {self.name!r}" if self.name else "Scene")
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
+        """The picture over the table, for notebooks; left out where it takes long, or cannot be had."""
         shown = "<p>picture() draws it</p>"
         if self.drawn_at_once:
             with suppress(InputError):  # `check` says what is wrong
                 content = b64encode(self.picture()._repr_png_()).decode()
                 shown = f"<img style='max-width:100%' src='data:image/png;base64,{content}'>"
-        return shown + as_html(self, f"Scene {self.name!r}" if self.name else "Scene")
+        return {"text/plain": repr(self), "text/html": shown + self._repr_html_()}
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy, of pydantic: ``update`` is not checked; use `with_`."""

@@ -122,6 +122,8 @@ def test_words_and_sections_change_the_look(jet):
     said = with_section(look, table)
     assert (said.field, said.colour, said.limits, said.arrows, said.size) == ("pressure", None, (0, 5), 3, 500)
     assert with_section(look, None) is look
+    of_points = with_section(look, {"field": "spin", "limits": [0, 5]}, cells=False)
+    assert (of_points.field, of_points.colour, of_points.cloud_limits) == ("velocity", "spin", (0, 5))
 
 
 def test_held_discs_are_no_grains(jet):

@@ -106,7 +106,7 @@ def test_a_built_scene_shows_its_sections():
     assert scene.drawn_at_once
     picture = scene.picture()
     assert picture.pixels.std() > 10
-    assert "data:image/png" in scene._repr_html_()
+    assert "data:image/png" in scene._repr_mimebundle_()["text/html"]
 
 
 def test_a_picture_is_a_png_file():
@@ -117,3 +117,20 @@ def test_a_picture_is_a_png_file():
     assert drawing() == Path("scene.png")
     with pytest.raises(InputError, match=r"name it scene\.png"):
         drawing(Path("scene.svg"))
+
+
+def test_a_look_at_what_is_not_recorded_is_refused():
+    import porescale as ps
+
+    tables = {
+        "domain": {"width": 0.02, "height": 0.01}, "time": {"end": 0.1}, "gravity": [0, 0],
+        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
+        "fluid": {"spacing": 5e-4, "viscosity": 1e-5, "step": 1e-3},
+    }  # fmt: skip
+    for look, said in (
+        ({"field": "vorticity"}, "look.field = 'vorticity': is not recorded"), ({"limits": [2, 1]}, "look.limits"),
+        ({"view": [0.02, 0.01, 0, 0.01]}, "look.view"), ({"size": 3}, "look.size"), ({"fields": "x"}, "look.fields"),
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=said):
+            ps.Scene(**tables, look=look)
+    assert ps.Scene(**tables, look={"field": "pressure", "view": ["1 cm", "2 cm", 0, 0.01]}).look.view[0] == 0.01
