@@ -15,7 +15,6 @@ from porescale.cli.homogenise import homogenise
 from porescale.common.cli.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, Vary, laid_over
-from porescale.common.core.statistics import half_width
 
 if TYPE_CHECKING:
     from porescale.common.studies.parameter_table import Point
@@ -110,6 +109,8 @@ def volume(
 
 def measured(point: Point, material: dict[str, Any], before: dict[str, Seen]) -> dict[str, Seen]:
     """What is shown of a material file, beside the same at the value before."""
+    from porescale.common.core.statistics import half_width
+
     key, _, value = point.settings[-1].partition("=")
     made = {}
     for name in SHOWN:

@@ -21,7 +21,7 @@ from porescale.common.page.meta import meta
 from porescale.common.page.quantise import Precision
 from porescale.common.page.scripts import joined, static
 from porescale.common.page.tables import table
-from porescale.common.record.card import plain
+from porescale.common.record.card import FINISHED, plain
 
 if TYPE_CHECKING:
     from porescale.common.api.open_run import Run
@@ -61,7 +61,9 @@ def write_report(folder: Path, program: Program) -> Path:
     """Write the page of the run in ``folder`` into it, as at a run's end; returns its path."""
     from porescale.common.api.open_run import open_run
 
-    return report([open_run(folder, program)])
+    run = open_run(folder, program)
+    run.card["outcome"] = FINISHED  # the card says so once the page, the last of its files, is there
+    return report([run])
 
 
 def require_alike(runs: Sequence[Run]) -> None:

@@ -15,7 +15,7 @@ from porescale.common.api.open_run import open_run
 from porescale.common.core.errors import InputError
 from porescale.common.page.frames import frame, kept
 from porescale.common.page.meta import meta
-from porescale.common.page.page import NAME, SCRIPTS, fitting, report, script
+from porescale.common.page.page import NAME, SCRIPTS, fitting, report, script, write_report
 from porescale.common.page.quantise import Precision
 from porescale.common.page.tables import table
 from porescale.common.pictures.look import Look
@@ -133,6 +133,15 @@ def test_a_page_holds_every_frame_table_and_text(run, written):
     assert "at" in first["clouds"]["grains"]["arrays"]["radius"]
     assert later["clouds"]["grains"]["arrays"]["radius"] == {"same": 1}
     assert "same" not in later["clouds"]["grains"]["arrays"]["position"]
+
+
+def test_the_page_of_a_run_that_ends_says_that_it_has(run, folder):
+    before = (folder / "card.json").read_text(encoding="utf-8")
+    (folder / "card.json").write_text(before.replace('"finished"', '"running"'), encoding="utf-8")
+    path = write_report(folder, PROGRAM)
+    (folder / "card.json").write_text(before, encoding="utf-8")
+    assert json.loads(held(path)["meta"])["outcome"] == "finished"
+    path.unlink()
 
 
 def test_what_people_write_is_text_in_the_page(written):
