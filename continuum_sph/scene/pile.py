@@ -12,12 +12,12 @@ from porescale.common.schema.sections import Section, quantity
 class SheetPileSection(Section):
     """A rigid, impermeable sheet that stands in soil and water, from its tip to the top of the tank.
 
-    faces : whether they "hold" the soil or let it "slip".  One column of particles stands for it, which ends a spacing
-    above the tip: in flow around it, its thickness makes up for that (`continuum_sph.seepage.sheet_pile`).
+    faces : whether they "hold" the soil or let it "slip".  One column of particles stands for it, which ends a row
+    above that of the tip; the flow of water is that of a sheet down to the tip (`continuum_sph.seepage.sheet_pile`).
     """
 
     x: float = quantity("m", ge=0, le=1e5, help="where it stands; its column is the one that holds x")
-    tip: float = quantity("m", ge=0, le=1e5, help="height of its lower end, to the nearest row")
+    tip: float = quantity("m", ge=0, le=1e5, help="height of its lower end; soil has it to the nearest row")
     faces: Literal["slip", "hold"] = pydantic.Field(default="slip", description="whether the faces hold the soil")
 
     def column(self, spacing: float) -> float:
@@ -25,7 +25,7 @@ class SheetPileSection(Section):
         return (math.floor(self.x / spacing + 1e-9) + 0.5) * spacing
 
     def lower_end(self, spacing: float) -> float:
-        """Height (m) at which that column ends, a spacing above the tip."""
+        """Height (m) at which that column ends, a row above the edge nearest the tip."""
         return (round(self.tip / spacing) + 1) * spacing
 
     def faults(self, width: float, height: float, spacing: float) -> list[Fault]:

@@ -108,6 +108,7 @@ class PoreFlow(Flow):
     def update_slip(self) -> None:
         """Take up the velocities that both layers have now; `evaluate` does so too."""
         layer, soil = self.layer, self.skeleton
+        soil.resist()  # as at the end of the last step; of a run that goes on from a state
         relative_to_soil(layer.fluid, *self.overlap.rows, soil.weigh(soil.v), layer.v, self.pores, SLIP_X)
 
     def drag(self, seconds: float) -> None:

@@ -85,7 +85,7 @@ class Reservoir:
 
     left, right, bottom : m;  times (k,) s and levels (k,) m : straight lines between them, constant before and after;
     walls : whether each end lies at a wall of the tank;  let_in, let_out : mass recorded so far, kg/m;  level : of the
-    last step, m.
+    last step, m;  stood : that of the first, m;  full : kg/m² of the strip to a metre of level.
     """
 
     name: str
@@ -98,20 +98,30 @@ class Reservoir:
     let_in: float = 0.0
     let_out: float = 0.0
     level: float = 0.0
+    stood: float = field(default=float("nan"))
+    full: float = 0.0
     tops: Floats = field(default_factory=lambda: np.zeros(0))
     ramps: tuple[float, float] = (0.0, 0.0)
 
-    def fit(self, spacing: float) -> None:
-        """Columns and ramps for particles of a ``spacing``, m."""
+    def fit(self, spacing: float, density: float) -> None:
+        """Columns and ramps for particles of a ``spacing``, m, and a ``density``, kg/m³."""
         breadth = self.right - self.left
         self.tops = np.zeros(max(1, round(breadth / spacing)))
         ramp = min(RAMP * spacing, 0.5 * breadth)
         self.ramps = (0.0 if self.walls[0] else ramp, 0.0 if self.walls[1] else ramp)
+        self.full = density * self.width
 
     @property
     def width(self) -> float:
         """Effective width of the strip, ∫ w dx, m."""
         return self.right - self.left - 0.5 * sum(self.ramps)
+
+    @property
+    def passed(self) -> float:
+        """Mass that has gone from the strip into the rest of the tank since the start, kg/m: what was let in less what
+        was let out, and less what the strip holds more.  No steps of whole particles, but where one is put on a
+        ramp: then of its part there."""
+        return self.let_in - self.let_out + self.full * (self.stood - self.level)
 
     def wanted(self, time: float) -> float:
         """Level (m) at a ``time`` (s)."""
@@ -134,7 +144,7 @@ class Supply:
         self.density, self.stiffness, self.gravity = density, stiffness, gravity
         self.whole = density * spacing * spacing  # kg/m, of a new particle
         for reservoir in self.reservoirs:
-            reservoir.fit(spacing)
+            reservoir.fit(spacing, density)
 
     def keep(self, time: float) -> None:
         """Bring every reservoir to its level of ``time`` (s), between drift and forces of a step.
@@ -150,8 +160,7 @@ class Supply:
 
     def _level(self, pool: Reservoir, time: float) -> None:
         """Add or take particles until ``pool`` is within half a particle of its level."""
-        layer, target = self.layer, pool.wanted(time)
-        full = self.density * pool.width
+        layer, target, full = self.layer, pool.wanted(time), pool.full
         while True:
             held, highest = measure_strip(
                 layer.fluid, layer.x, layer.mass, layer.material, pool.left, pool.right, *pool.ramps, pool.bottom,
@@ -159,6 +168,8 @@ class Supply:
             )  # fmt: skip
             over = held - full * (target - pool.bottom)
             pool.level = pool.bottom + held / full
+            if np.isnan(pool.stood):
+                pool.stood = pool.level
             if highest >= 0 and (over > 0.5 * layer.mass[highest] or target <= pool.bottom):
                 pool.let_out += float(layer.mass[highest])
                 layer.mass[highest] = 0.0
@@ -201,9 +212,9 @@ class Supply:
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go on from the ``state`` of a supply of the same reservoirs."""
-        rows = zip(self.reservoirs, state["let_in"], state["let_out"], state["level"], strict=True)
-        for pool, let_in, let_out, level in rows:
-            pool.let_in, pool.let_out, pool.level = float(let_in), float(let_out), float(level)
+        for name in ("let_in", "let_out", "level"):
+            for pool, value in zip(self.reservoirs, state[name], strict=True):
+                setattr(pool, name, float(value))
 
 
 def berths(count: int, width: float, floor: float, pitch: float) -> Floats:

@@ -11,9 +11,10 @@ the other side is lost from sight while its image stays.  It is two spacings awa
 that next to a particle.  Without any thickness, and with lines of sight past the tip in place of its level (visibility:
 Belytschko, Lu & Gu, Int. J. Numer. Meth. Engng. 37 (1994) 229), it is next to it, and the tip is torn open.
 
-In flow around it, a slab of thickness t that ends square is a sheet that is longer by (t/2π) {1 + ln(4πR/t)} seen from
-a distance R (z = (t/π) {w √(w²-1) - arcosh w} maps it): 0.9 t for R = 8 t, 1.1 t for 30 t.  A `Pile` ends a spacing
-above the sheet that it stands for.
+In flow around it, a slab of thickness t that ends square is a sheet that is longer by 0.8 to 1 t, and kernels make it
+longer still (`sheet_flow`).  A `Pile` ends a row above that of the tip, and for the rest, which may be a share of a
+spacing of either sign, the ground about its foot resists the water more or less (`Foot`), as a well has an index where
+cells are wider than the well (Peaceman, SPE Journal 18 (1978) 183).  So the tip lies where it is put, between rows too.
 
 What is on which side is that of the last build of the list, in which particles move by half a skin at most.  A particle
 that would enter the pile is put on its surface, without its speed across; what energy that takes is not counted.
@@ -24,10 +25,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import inline, kernel
+from continuum_sph.seepage.sheet_flow import longer
+from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
 
+FOOT_REACH = 2.5  # spacings: how far from the foot of a pile the ground's resistance is changed
+FOOT_GAIN = 0.345
+"""Spacings by which a foot of strength 1 shortens the sheet: 0.31 to 0.40 for strengths of 1.5 to -1, s/T 0.2 to 0.9,
+h of 1.3 spacings."""
+MOST_SHIFT = 0.8  # spacings: the largest that a foot is made for
 LEFT, RIGHT, UNDER = range(3)
 """Sides of a pile, from which its sets are seen."""
 FREE = -1
@@ -101,18 +108,62 @@ def keep_out(x, v, last, at, bottom, half):
     return held
 
 
-@dataclass(frozen=True)
-class Pile:
-    """A pile from ``bottom`` (m), an edge of the particles' rows, to the top of the tank and beyond, in ``x`` (m), the
-    middle of a column of theirs.
+@parallel_kernel
+def ease_foot(x, plain, resisting, at, bottom, reach, strength):
+    """Overwrites ``resisting`` (s,): ``plain`` (s,) times exp(-strength (1 - r)⁴ (1 + 4 r)) of soil at ``x`` (s, 2) m,
+    r its distance from (at, bottom) over ``reach``, all m; 1 farther off."""
+    inverse = 1.0 / reach
+    for s in prange(plain.shape[0]):
+        dx = (x[s, 0] - at) * inverse
+        dy = (x[s, 1] - bottom) * inverse
+        r = np.sqrt(dx * dx + dy * dy)
+        resisting[s] = plain[s]
+        if r < 1.0:
+            rest = (1.0 - r) * (1.0 - r)
+            resisting[s] *= np.exp(-strength * rest * rest * (1.0 + 4.0 * r))
 
-    spacing : of the particles, and its thickness, m;  rough : soil is held by its faces, else it slips.
+
+@dataclass(frozen=True)
+class Foot:
+    """Ground about the foot (x, bottom) of a pile, all m, whose resistance to water makes the flow that of a sheet.
+
+    spacing : of the particles, m;  strength : of `ease_foot`, eases the flow where positive.
     """
 
     x: float
     bottom: float
     spacing: float
+    strength: float
+
+    def ease(self, x: Floats, plain: Floats, resisting: Floats) -> None:
+        """Overwrite ``resisting`` (s,) of soil at ``x`` (s, 2) m, ``plain`` (s,) without a foot."""
+        ease_foot(x, plain, resisting, self.x, self.bottom, FOOT_REACH * self.spacing, self.strength)
+
+
+@dataclass(frozen=True)
+class Pile:
+    """A pile from ``bottom`` (m), an edge of the particles' rows, to the top of the tank and beyond, in ``x`` (m), the
+    middle of a column of theirs.
+
+    tip : m, of the sheet that it stands for;  spacing : of the particles, and its thickness, m;  rough : soil is held
+    by its faces, else it slips.
+    """
+
+    x: float
+    tip: float
+    bottom: float
+    spacing: float
     rough: bool = False
+
+    def foot(self, surface: float) -> Foot | None:
+        """What makes the flow that of the sheet, in ground up to a ``surface`` (m) over a base at 0; none where the
+        sheet ends outside."""
+        if not 0.0 < self.tip < surface:
+            return None
+        wanted = longer(1.0 - self.tip / surface, surface / self.spacing)
+        shift = wanted - (self.bottom - self.tip) / self.spacing
+        strength = min(MOST_SHIFT, max(-MOST_SHIFT, shift)) / FOOT_GAIN
+        return Foot(self.x, self.bottom, self.spacing, strength)
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which of ``points`` (n, 2) m lie in it."""

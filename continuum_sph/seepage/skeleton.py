@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from continuum_sph.seepage.sheet_pile import Foot
 from continuum_sph.soil import SoilFlow
 from porescale.common.compiled.jit import parallel_kernel, prange
 from porescale.common.core.types import Floats
@@ -38,7 +39,8 @@ class Skeleton:
     """Views of a soil's arrays, all (soil, …), and what water needs besides.
 
     x m;  v m/s;  acceleration m/s²;  force N/m, overwritten by water;  mass kg/m, infinite for soil that is held;
-    grains : volume of solid, m² (per metre of depth), constant;  permeability : k, m/s.
+    grains : volume of solid, m² (per metre of depth), constant;  permeability : k, m/s;  foot : of a pile, see
+    `sheet_pile.Foot`, or None.
     """
 
     x: Floats
@@ -48,7 +50,9 @@ class Skeleton:
     mass: Floats
     grains: Floats
     permeability: Floats
-    resisting: Floats = field(init=False)  # grains/k, m s
+    foot: Foot | None = None
+    plain: Floats = field(init=False)  # grains/k, m s
+    resisting: Floats = field(init=False)  # the same as water has it, with what a pile's foot makes of it
     held: bool = field(init=False)  # whether it cannot move, whatever acts on it
     burden: Floats = field(init=False)  # (soil, 8) what a water particle reads of its partners
     shown: Floats = field(init=False)  # (soil, 2) of these what it reads anew, times resisting
@@ -59,12 +63,19 @@ class Skeleton:
             assert getattr(self, name).shape == (count, 2), name
         for name in ("mass", "grains", "permeability"):
             assert getattr(self, name).shape == (count,), name
-        self.resisting = self.grains / self.permeability
+        self.plain = self.grains / self.permeability
+        self.resisting = self.plain.copy()
         self.held = bool(np.isinf(self.mass).any())
         self.burden, self.shown = np.zeros((count, 8)), np.zeros((count, 2))
 
+    def resist(self) -> None:
+        """Take up how the soil resists where it is now."""
+        if self.foot is not None:
+            self.foot.ease(self.x, self.plain, self.resisting)
+
     def show(self) -> None:
         """Take places and velocities of now into ``burden``."""
+        self.resist()
         show_soil(self.x, self.v, self.mass, self.grains, self.resisting, self.burden)
 
     def weigh(self, values: Floats) -> Floats:

@@ -7,7 +7,7 @@ import numpy as np
 from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
 from continuum_sph.builders.parts.held_soil import held_ground
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
-from continuum_sph.builders.parts.sheet_pile import sheet_pile
+from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
 from continuum_sph.builders.parts.soil import material_of, soil_flow, soil_section
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
@@ -108,6 +108,7 @@ def seepage_flow(scene: Scene) -> Seepage:
     x, v, rho = saturate(scene, skeleton.x, *water_particles(scene, law))
     pile = sheet_pile(scene.pile, spacing) if scene.pile else None
     if pile:
+        skeleton.foot = pile.foot(ground_at(section, pile.x))
         x, v, rho = (values[~pile.holds(x)] for values in (x, v, rho))
     layers, (width, height), area = wall_layers(law, spacing), scene.inner, spacing * spacing
     margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length

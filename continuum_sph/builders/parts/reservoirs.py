@@ -37,17 +37,20 @@ class ReservoirPart(Part):
                 )  # fmt: skip
 
     def row(self) -> dict[str, float]:
-        """Level, and mass let in and out, of each.
+        """Level, mass let in and out, and mass passed on, of each.
 
         NAME level (m) : height of the reservoir's water
         NAME let in (kg/m) : mass that it has let into the tank
         NAME let out (kg/m) : mass that it has taken out
+        NAME passed on (kg/m) : mass that has gone from it into the rest of the tank: let in less let out and less what
+            more it holds: smoother than these, which go in steps of whole particles
         """
         row = {}
         for it in self.supply.reservoirs:
             row[f"{it.name} level (m)"] = it.level
             row[f"{it.name} let in (kg/m)"] = it.let_in
             row[f"{it.name} let out (kg/m)"] = it.let_out
+            row[f"{it.name} passed on (kg/m)"] = it.passed
         return row
 
     def state(self) -> dict[str, Any]:

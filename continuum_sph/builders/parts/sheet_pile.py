@@ -1,22 +1,32 @@
 """A sheet pile, and its exit gradient i_E: how steep the flow is where it comes out of the ground beside it.
 
-Along the pile the head is odd in depth below the surface of the ground, so its first terms are h0 + i d + c d³, down
-to some way before the tip, where it has a root; h0 is that of the open water above, or of the ground itself where it
-is dry.  i is what least squares fits to the particles beside the pile.  The soil there has lost its weight at i = i_c.
+The head over that of the water above it vanishes at the surface of the ground, no water passes the sheet, and at its
+tip, z = s, the head has a root: in z = y + ix, y the depth, x the distance from the sheet, it is a sum of
+
+    Re s arcsin(z/s),   Re z √(1 - z²/s²),   …
+
+(the first is that of ground without a base, with h/π s in place of 1).  i_E is the sum of the factors of these two that
+least squares give the particles beside the pile, over what its thickness adds (`sheet_flow.thickness_at_exit`).  The
+soil there has lost its weight at i = i_c.  With fewer than LEAST rows beside the sheet there are fewer than two rows
+between the surface, where kernels round off the bend of the head, and the tip: no number then.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from continuum_sph.scene.pile import SheetPileSection
+from continuum_sph.scene.soil import SoilSection
 from continuum_sph.seepage import PoreFlow
+from continuum_sph.seepage.sheet_flow import thickness_at_exit
 from continuum_sph.seepage.sheet_pile import Pile
 from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
 
 NAME = "exit gradient ()"
 """Column of series.csv in a scene with a pile."""
-SHARE, ROWS = 0.6, 3.0
-"""How deep the fit goes: share of the sheet's depth, and spacings at least."""
+LEAST = 4.0
+"""Spacings that a sheet must reach into the ground for an exit gradient."""
+NEAR_TIP = 0.75  # of its depth: how deep the fit goes
 WIDE = 2.0  # spacings beside the pile, whose particles are fitted
 OPEN = 4.0  # spacings beside it and above the ground, whose water gives h0
 BLURRED = 1.0  # spacings about the surface of the ground, in which kernels round off the bend of the head
@@ -24,7 +34,12 @@ BLURRED = 1.0  # spacings about the surface of the ground, in which kernels roun
 
 def sheet_pile(section: SheetPileSection, spacing: float) -> Pile:
     """The pile of a section, of particles of a ``spacing`` (m)."""
-    return Pile(section.column(spacing), section.lower_end(spacing), spacing, section.faces == "hold")
+    return Pile(section.column(spacing), section.tip, section.lower_end(spacing), spacing, section.faces == "hold")
+
+
+def ground_at(section: SoilSection, x: float) -> float:
+    """Height (m) of the ground's surface at ``x`` (m) at the start; minus infinity where there is none."""
+    return float(np.max([body.top(np.array([x])) for body in section.body]))
 
 
 class ExitGradientPart(Part):
@@ -36,25 +51,29 @@ class ExitGradientPart(Part):
     def row(self) -> dict[str, float]:
         """The column of the exit gradient i_E at the sheet pile.
 
-        exit gradient () : hydraulic gradient upwards where water leaves the ground beside the pile
+        exit gradient () : hydraulic gradient upwards where water leaves the ground beside the pile; nan where fewer
+            than four rows of particles lie beside it
         """
         return {NAME: exit_gradient(self.pile, self.flow, self.weight)}
 
 
-def reach(buried: float, spacing: float) -> float:
-    """How deep (m) the fit goes beside a sheet that is ``buried`` so deep (m)."""
-    return max(ROWS * spacing, SHARE * buried)
-
-
-def steepness(depth: Floats, head: Floats) -> float:
-    """i of i d + c d³ for ``head`` (n,) m over that at the surface, at ``depth`` (n,) m; none from fewer than 2."""
-    if len(depth) < 2:
+def steepness(z: NDArray[np.complex128], head: Floats, buried: float) -> float:
+    """i of ``head`` (n,) m over that at the surface, at z = y + ix (n,) m beside a sheet that is ``buried`` so deep, m;
+    no number from fewer than four."""
+    if len(z) < 4:
         return float("nan")
-    return float(np.linalg.lstsq(np.column_stack((depth, depth**3)), head)[0][0])
+    terms = np.column_stack((buried * np.arcsin(z / buried), z * np.sqrt(1.0 - (z / buried) ** 2))).real
+    return float(np.linalg.lstsq(terms, head)[0].sum())
+
+
+def resolved(buried: float, spacing: float) -> bool:
+    """Whether a sheet that is ``buried`` so deep (m) has rows enough of a ``spacing`` (m) beside it."""
+    return buried > (LEAST - 0.5) * spacing
 
 
 def beside(pile: Pile, water: Floats, head: Floats, soil: Floats) -> float:
-    """i_E where water rises beside a ``pile``: the larger of its two sides; no number where the ground is gone.
+    """i_E where water rises beside a ``pile``: the larger of its two sides; no number where the ground is gone, or the
+    sheet not deep enough in it.
 
     water (n, 2) m, head (n,) m: of the water's particles, p/(ρ g) + y;  soil (s, 2) m.
     """
@@ -65,13 +84,14 @@ def beside(pile: Pile, water: Floats, head: Floats, soil: Floats) -> float:
         if not ground.size:
             continue
         top = float(ground.max()) + 0.5 * spacing
-        depth = top - water[:, 1]
-        # A pile ends a spacing above the sheet that it stands for.
-        deepest = reach(top - pile.bottom + spacing, spacing)
-        near = (away > 0.0) & (away < WIDE) & (depth > BLURRED * spacing) & (depth < deepest)
+        depth, buried = top - water[:, 1], top - pile.tip
+        if not resolved(buried, spacing):
+            continue
+        near = (away > 0.0) & (away < WIDE) & (depth > BLURRED * spacing) & (depth < NEAR_TIP * buried)
         over = (away > 0.0) & (away < OPEN) & (depth < -BLURRED * spacing) & (depth > -OPEN * spacing)
         level = float(head[over].mean()) if over.any() else top
-        found.append(steepness(depth[near], head[near] - level))
+        steep = steepness(depth[near] + 1j * spacing * away[near], head[near] - level, buried)
+        found.append(steep / thickness_at_exit(min(1.0, buried / top), top / spacing))
     return float(np.fmax.reduce(found))
 
 

@@ -2,6 +2,7 @@
 
 from continuum_sph.builders.parts.air import air_report, dry_pores
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law
+from continuum_sph.builders.parts.sheet_pile import LEAST, ground_at, resolved, sheet_pile
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.water import water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
@@ -14,6 +15,7 @@ from porescale.common.core.errors import Fault, InputError
 
 RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
 REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
+LEAST_BELOW = 2.0  # rows below a pile: with 2 discharges are 1.2 % high
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
 
@@ -46,6 +48,8 @@ def seepage_report(scene: Scene) -> Report:
     out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
     report_output(out, scene.time.end, scene.output, round(scene.time.end / step), 1000.0 + 2.0 * SNAPSHOT * len(soil))
     report_origin(out, section.origin)
+    if scene.pile:
+        pile_report(scene, out)
     if scene.reservoir:
         levels(scene, out)
     return out
@@ -74,6 +78,27 @@ def moving(scene: Scene, out: Report, stiff: float) -> float:
             f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
         )
     return step
+
+
+def pile_report(scene: Scene, out: Report) -> None:
+    """Rows of particles beside and below the pile, and warnings where they are too few for what is measured there."""
+    assert scene.pile is not None
+    spacing, tip = scene.numerics.spacing, scene.pile.tip
+    buried = ground_at(soil_section(scene), sheet_pile(scene.pile, spacing).x) - tip
+    out.heading("sheet pile")
+    out.row("rows of ground beside it", buried / spacing, "", f"at least {LEAST:g} for an exit gradient")
+    out.row("rows of ground below it", tip / spacing, "", f"at least {LEAST_BELOW:g}")
+    if not resolved(buried, spacing):
+        out.warn(
+            f"the pile is {buried / spacing:.2g} rows deep in the ground: exit gradient () will be nan, as it is fit "
+            "to what lies between the first row and the tip; "
+            f"numerics.spacing = {max(0.0, buried) / LEAST:.2g} mends it"
+        )
+    if tip < LEAST_BELOW * spacing:
+        out.warn(
+            f"{tip / spacing:.2g} rows of ground lie below the pile, whose column ends a row higher: discharges are "
+            f"more than 2 % high; numerics.spacing = {tip / LEAST_BELOW:.2g} mends it"
+        )
 
 
 def levels(scene: Scene, out: Report) -> None:

@@ -45,7 +45,7 @@ def command(package: Package) -> Callable[..., int]:
         else:
             report.show()
         if file is not None:
-            draw(opened.scene, file)
+            draw(opened.scene, file, aside=json)
         return 0
 
     return check
@@ -60,7 +60,7 @@ def drawing(file: Path = Path("scene.png")) -> Path:
     return file
 
 
-def draw(scene: Any, file: Path) -> None:
-    """Write the picture of a scene and name it; a packing that is settled for it says how far it is."""
+def draw(scene: Any, file: Path, *, aside: bool = False) -> None:
+    """Write the picture of a scene and name it, on stderr where it must not be among what is printed (``aside``)."""
     scene.picture().save(file)
-    print(file, file=sys.stderr)
+    print(file, file=sys.stderr if aside else sys.stdout)

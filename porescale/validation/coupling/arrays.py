@@ -1,7 +1,7 @@
 """Validations of exact walls on arrays of discs in slow flow: drag, its order, leak, torque, at any place in a cell.
 
-References: drag F/(mu U), or torque, of point forces (tests/reference/stokes_array.py), U superficial; six digits and
-more.  Of square arrays Sangani & Acrivos 1982 print the same to all their digits but at 0.3.  Lattice units.
+References: drag F/(mu U), or torque, of point forces (tests/reference/coupling/stokes_array.py), U superficial; six
+digits and more.  Of square arrays Sangani & Acrivos 1982 print the same to all their digits but at 0.3.  Lattice units.
 """
 
 import math

@@ -20,7 +20,7 @@ AT_A_WALL = (0.02, 0.03, 0.05, 0.1)
 """Gaps in radii of ten cells: a fifth of a cell to a cell."""
 BETWEEN = {0.02: 1.0381, 0.05: 1.1007, 0.1: 1.2145}
 """Force on discs that close on each other, over 3 sqrt(2) pi mu (R/2g)^(3/2) V, by the gap g in radii: two in a
-periodic box of side 6 R, by point forces (tests/reference/stokes_array.py)."""
+periodic box of side 6 R, by point forces (tests/reference/coupling/stokes_array.py)."""
 PLACES = ((0.1, 0.0, 0.0), (0.8, 0.3, 0.6), (1.4, 0.7, 0.2), (2.4, 0.5, 0.9))
 """Angle of the line of centres, rad, and the place of its middle within a cell."""
 

@@ -250,7 +250,7 @@ OSCILLATIONS = ((5.0, 10.0, 0.6), (20.0, 10.0, 0.53), (100.0, 20.0, 0.515))
 """Frequency a² w/nu, radius in cells, tau."""
 SHEAR = {0.25: 0.48208, 0.125: 0.49567}
 """Spin over shear rate of a free disc midway between walls in slow flow, by diameter over their distance: point forces
-(tests/reference/stokes_box.py), five digits; 1/2 without walls."""
+(tests/reference/coupling/stokes_box.py), five digits; 1/2 without walls."""
 SINKING = (0.8, 2.5, 10.0)
 KISS = 0.173
 

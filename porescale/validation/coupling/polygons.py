@@ -1,7 +1,7 @@
 """Polygons that stand still in slow flow: the area they cover, drag and torque of square arrays.  Lattice units.
 
 References: drag F/(mu U) of square arrays, U superficial, and torque over mu w and the cell, of forces along the sides
-(tests/reference/stokes_polygons.py), five digits.
+(tests/reference/coupling/stokes_polygons.py), five digits.
 """
 
 import math

@@ -257,7 +257,8 @@ def sangani_acrivos(solid_fraction: float) -> float:
 
 
 NEAR_WALL = {"along": 31.593, "towards": 181.712, "turning": 24.006}
-"""Rim 0.2 radii above the floor of a closed box of 12 by 6 radii: tests/reference/stokes_box.py, five digits."""
+"""Rim 0.2 radii above the floor of a closed box of 12 by 6 radii: tests/reference/coupling/stokes_box.py, to five
+digits."""
 
 RADIUS = 7.3e-3
 """How much of its radius a disc 10 cells wide may look too big or small in one place: 2 % of a drag that goes as its

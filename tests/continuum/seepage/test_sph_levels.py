@@ -61,6 +61,20 @@ def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are(
         assert np.array_equal(slow, strip.tops)
 
 
+def test_what_has_passed_on_has_no_steps_of_whole_particles():
+    # Each particle in turn becomes 4 kg/m lighter, and one of 10 is let in for what is lost.
+    given = supply(pool(0.4, right=2.0, walls=(True, True)))
+    layer, strip = given.layer, given.reservoirs[0]
+    given.keep(0.0)
+    inside = np.flatnonzero((layer.mass > 0.0) & (layer.x[:, 0] < 0.7))
+    assert len(inside) == 28
+    for count, i in enumerate(inside, 1):
+        layer.mass[i] -= 4.0
+        given.keep(0.0)
+        assert strip.passed == pytest.approx(4.0 * count, abs=ROUND * 1000 * count)
+    assert strip.let_in == pytest.approx(110.0)  # the twin that must fail: 112 have passed
+
+
 def test_air_in_a_strip_is_no_water():
     given = supply(pool(0.4))
     layer, strip = given.layer, given.reservoirs[0]

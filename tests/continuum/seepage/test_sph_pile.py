@@ -4,11 +4,24 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from continuum_sph.builders.parts.sheet_pile import NAME, beside, sheet_pile
+from continuum_sph.builders.parts.sheet_pile import NAME, beside, sheet_pile, steepness
+from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.sheet_pile import FREE, LEFT, RIGHT, UNDER, CutPairList, cut_pairs, keep_out, side_of
+from continuum_sph.seepage.sheet_flow import longer, thickness_at_exit
+from continuum_sph.seepage.sheet_pile import (
+    FOOT_GAIN,
+    FREE,
+    LEFT,
+    RIGHT,
+    UNDER,
+    CutPairList,
+    cut_pairs,
+    ease_foot,
+    keep_out,
+    side_of,
+)
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from porescale.common.neighbors import PairList, square_lattice
 
@@ -73,6 +86,24 @@ def test_without_the_pile_in_the_list_both_sides_are_seen_at_once():  # the twin
     assert across.any()
     _, seen = listed(x, i)
     assert not (x[seen[seen < len(x)], 0] > PILE.x).any()
+
+
+def test_the_foot_makes_up_for_what_the_pile_is_longer_than_its_sheet():
+    wanted = longer(1.0 / 3.0, 6.0)
+    assert PILE.foot(0.6).strength == pytest.approx((wanted - 1.0) / FOOT_GAIN)
+    # half a row lower the same column is half a row shorter than its sheet
+    assert pile(0.4 + 0.04).foot(0.6).strength == pytest.approx((longer(0.16 / 0.6, 6.0) - 0.6) / FOOT_GAIN)
+    assert pile(0.4).foot(0.3) is None  # no ground there
+    assert pile(0.0).foot(0.6) is None  # no way round it
+
+
+def test_the_ground_about_the_foot_resists_less_and_no_other():
+    x = np.array([[0.75, 0.5], [0.85, 0.5], [0.75, 0.2], [1.2, 0.5]])
+    plain, resisting = np.full(4, 2.0), np.zeros(4)
+    ease_foot.py_func(x, plain, resisting, 0.75, 0.5, 0.25, 0.5)
+    assert resisting[0] == pytest.approx(2.0 * np.exp(-0.5))
+    assert resisting[0] < resisting[1] < 2.0
+    assert resisting[2] == resisting[3] == 2.0
 
 
 def test_pairs_pass_below_the_tip_only():
@@ -156,7 +187,18 @@ def test_a_run_beside_a_pile_goes_on_bit_for_bit():
     ):
         assert np.array_equal(one.x, other.x)
         assert np.array_equal(one.v, other.v)
-    assert np.isfinite(first.series()[NAME])
+    assert np.isnan(first.series()[NAME])  # two rows beside it
+
+
+def test_check_says_why_a_pile_has_no_exit_gradient_and_where_too_little_ground_lies_below_it():
+    def warnings(tip):
+        return " ".join(seepage_report(scene(pile={"x": 0.75, "tip": tip})).warnings)
+
+    assert "exit gradient () will be nan" in warnings(0.4)
+    assert "numerics.spacing = 0.05 mends it" in warnings(0.4)
+    assert "exit gradient" not in warnings(0.2)
+    assert "below the pile" not in warnings(0.2)
+    assert "below the pile" in warnings(0.1)
 
 
 def test_a_pile_stands_in_soil():
@@ -165,32 +207,42 @@ def test_a_pile_stands_in_soil():
 
 
 def field(level=0.8, slope=0.7, left=0.0):
-    """Places and heads of water about PILE in ground up to 0.6: i d + c d³ under open water on its right, ``left`` · d
-    on its left."""
+    """Places and heads of water about a sheet down to 0.1 in ground up to 0.6, under open water: on its right the flow
+    of ground without a base whose exit gradient is ``slope``, on its left that of ``left``."""
     water = square_lattice((0.0, 0.0), (1.5, 1.0), SPACING)
-    depth = np.maximum(0.0, 0.6 - water[:, 1])
-    head = np.where(water[:, 0] > PILE.x, level + slope * depth + 3.0 * depth**3, level - left * depth)
-    return water, head, square_lattice((0.0, 0.0), (1.5, 0.6), SPACING)
+    away = np.abs(water[:, 0] - 0.75) - 0.5 * SPACING
+    z = np.maximum(0.0, 0.6 - water[:, 1]) + 1j * away
+    steep = np.where(water[:, 0] > 0.75, slope, left)
+    return water, level + steep * 0.5 * np.arcsin(z / 0.5).real, square_lattice((0.0, 0.0), (1.5, 0.6), SPACING)
 
 
-def test_the_exit_gradient_is_the_first_term_of_the_head_along_the_pile():
-    deep = pile(0.1)  # 5 rows beside it, 3 of them fitted
+THICK = thickness_at_exit(0.5 / 0.6, 6.0)
+"""What the thickness of this pile adds to its exit gradient."""
+
+
+def test_the_exit_gradient_is_that_of_the_flow_around_a_sheet():
+    deep = pile(0.1)  # 5 rows beside it, 2 of them fitted
     water, head, soil = field()
-    assert beside(deep, water, head, soil) == pytest.approx(0.7, rel=1e-12)
-    assert beside(deep, water, head, soil) != pytest.approx(
-        beside(deep, water, head, soil + np.array([0.0, SPACING])), rel=0.05
-    )
+    assert beside(deep, water, head, soil) * THICK == pytest.approx(0.7, rel=1e-12)
+    lifted = soil + np.array([0.0, SPACING])
+    assert beside(deep, water, head, lifted) != pytest.approx(beside(deep, water, head, soil), rel=0.05)
 
 
 def test_it_is_that_of_the_side_where_water_rises():
-    deep = pile(0.1)
-    water, head, soil = field(slope=-0.2, left=-0.4)
-    assert beside(deep, water, head, soil) == pytest.approx(0.4, rel=1e-12)
+    water, head, soil = field(slope=-0.2, left=0.4)
+    assert beside(pile(0.1), water, head, soil) * THICK == pytest.approx(0.4, rel=1e-12)
+
+
+def test_fewer_than_four_rows_beside_a_pile_give_no_exit_gradient():
+    water, head, soil = field()
+    assert np.isfinite(beside(pile(0.2), water, head, soil))
+    assert np.isnan(beside(pile(0.3), water, head, soil))
+    assert np.isnan(steepness(np.zeros(3, np.complex128), np.zeros(3), 0.5))
 
 
 def test_dry_ground_gives_the_head_at_its_surface_and_ground_that_is_gone_gives_none():
     deep = pile(0.1)
     water, head, soil = field(level=0.6)
     under = water[:, 1] < 0.6
-    assert beside(deep, water[under], head[under], soil) == pytest.approx(0.7, rel=1e-12)
+    assert beside(deep, water[under], head[under], soil) * THICK == pytest.approx(0.7, rel=1e-12)
     assert np.isnan(beside(deep, water, head, soil[:0]))

@@ -39,22 +39,15 @@ def heads(cells: int, beside: int, thick: int, deep: int):
     return h
 
 
-def seen(share: float, rows: int, reach: float, finer: int):
-    """(q/(k h), i_E T/h): discharge, and the first term of i d + c d³ on the line half a row beside the pile, down to
-    0.6 of ``share`` or three rows;  a pile one row thick that ends a row above ``share``, ``finer`` cells a row."""
-    cells, beside = rows * finer, round(reach * rows) * finer
-    h = heads(cells, beside, finer, (round(share * rows) - 1) * finer)
-    depth = (np.arange(cells) + 0.5) / cells
-    line = 0.5 * (h[:, beside + finer + finer // 2 - 1] + h[:, beside + finer + finer // 2])[::-1]
-    near = depth < max(3.0 / rows, 0.6 * share)
-    terms = np.column_stack((depth, depth**3))[near]
-    return 2.0 * float(h[-1, -beside:].sum()), float(np.linalg.lstsq(terms, line[near], rcond=None)[0][0])
-
-
-def around(share: float, rows: int, reach: float):
-    """The same without cells: a root of the distance at the pile's corners leaves errors of the first order."""
-    coarse, fine = (np.array(seen(share, rows, reach, finer)) for finer in (2, 4))
-    return 2.0 * fine - coarse
+def thick(share: float, rows: int, reach: float, finer: int, short: int):
+    """(q/(k h), i_E T/h) of a pile one row thick that ends ``short`` cells above ``share``, ``finer`` cells a row,
+    without the cells' own error but for its square: of ``finer`` and twice as many."""
+    found = []
+    for more in (1, 2):
+        cells, beside = rows * finer * more, round(reach * rows) * finer * more
+        h = heads(cells, beside, finer * more, round(share * rows) * finer * more - short * more)
+        found.append((2.0 * float(h[-1, -beside:].sum()), 2.0 * float(h[-1, -beside]) * cells))
+    return 2.0 * np.array(found[1]) - np.array(found[0])
 
 
 def bounds(share: float, reach: float, cells: int):

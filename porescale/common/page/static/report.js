@@ -81,7 +81,7 @@ class Report {
     const { rows } = meta.verdicts;
     const passed = rows.filter((it) => it.passed).length;
     const facts = [["run", this.names.join(", ")], ["of", `${meta.package} ${meta.card.versions?.porescale ?? ""}`],
-      ["ended", ended], ["frames", String(meta.times.length)], ["took", meta.card.seconds ? `${shown(meta.card.seconds, 3)} s` : ""],
+      [meta.outcome === "running" ? "is" : "ended", ended], ["frames", String(meta.times.length)], ["took", meta.card.seconds ? `${shown(meta.card.seconds, 3)} s` : ""],
       ["expected", rows.length ? `${passed} of ${rows.length}` : ""]];
     const list = make("dl", { class: "facts" }, ...facts.filter(([, it]) => it).map(([key, it]) =>
       make("div", { class: key === "expected" && passed < rows.length ? "missed" : "" }, make("dt", {}, key), make("dd", {}, it))));
