@@ -1,6 +1,7 @@
 """Building the manual, and what is wrong with what was built."""
 
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -30,6 +31,10 @@ def build(out: Path, quiet: bool = True) -> tuple[int, str, float]:
     )
     if done.returncode == 0:
         (out / "index.html").write_text(FRONT, encoding="utf-8")
+        for page in (ROOT / "runs").glob("*/report.html"):  # that the gallery links to
+            if (ROOT / "cases" / page.parent.name).is_dir():
+                (out / "runs" / page.parent.name).mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(page, out / "runs" / page.parent.name / page.name)
     said = "\n".join(dict.fromkeys((done.stdout + done.stderr).splitlines()))  # some warnings come once for each page
     return done.returncode, said, time.perf_counter() - start
 

@@ -12,6 +12,8 @@ from docs._ext.made.text import code, escaped, table
 COMMAND = re.compile(r"^    ((?:porescale|continuum-sph|python) .*)$", re.MULTILINE)
 LINK = re.compile(r"\[(\w+)\]\(\.\./cases/\w+\)")
 PICTURE = re.compile(r"!\[([^\]]*)\]\(picture\.png\)")
+PAGES = {path.parent.name: path for path in sorted((ROOT / "runs").glob("*/report.html"))}
+"""Pages of runs in this tree, by name; `tests.manual` puts those of cases beside the manual."""
 MOST = 8
 """Numbers of a case that are shown; its README has all."""
 
@@ -50,6 +52,9 @@ def entry(case: str, text: str) -> str:
     commands = COMMAND.findall(readme)
     if commands:
         made.append(f"```sh\n{commands[0]}\n```\n")
+    if case in PAGES:
+        text = f"The page of its run in this tree: {case}, to play, to point at and to measure in"
+        made.append(f'```{{raw}} html\n<p><a href="../../runs/{case}/report.html">{text}</a></p>\n```\n')
     made.append(numbers(case))
     made.append(f"[{code(f'cases/{case}')}](../../cases/{case}/README.md): source, what is computed, what to see, "
                 "what falls short, the last recorded run.\n")  # fmt: skip
