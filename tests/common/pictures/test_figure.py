@@ -76,6 +76,7 @@ def test_every_format_is_written_whole(jet, tmp_path, kind):
         ({"every": 0}, "every"),
         ({"fps": 10, "format": "svg"}, "svg is a still"),
         ({"format": "tiff"}, "png, pdf, svg, mp4, gif"),
+        ({"format": "gif", "fps": 51}, "1 to 50"),
         ({"style": "poster"}, "paper, talk"),
         ({"size": 3}, "200 to 8000"),
         ({"size": "3 km"}, "size"),
@@ -90,6 +91,12 @@ def test_what_cannot_be_had_is_refused_in_a_line(jet, tmp_path, words, said):
         write_figure([jet], Wanted(**words))
     assert len(error.value.faults) == 1
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_the_ending_of_a_file_may_be_in_capitals(jet, tmp_path):
+    path = write_figure([jet], Wanted(size=300, every=2), tmp_path / "own.GIF")
+    assert path == tmp_path / "own.GIF"
+    assert path.read_bytes().startswith(b"GIF8")
 
 
 def test_two_runs_stand_beside_each_other_with_the_colours_of_both(jet, tmp_path):
