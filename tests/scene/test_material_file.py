@@ -104,6 +104,8 @@ def test_lattice_and_lambda_stand_in_the_bar_of_the_permeability():
     assert found["permeability over hydraulic diameter squared"].interval == pytest.approx(math.hypot(3, 5) * 4e-5)
     assert found["permeability"].table()["systematic"] == pytest.approx(0.05 * 4e-9)
     assert known(rows)["permeability"].interval == pytest.approx(0.03 * 4e-9)  # lambda known exactly
+    sealed = known([rows[0] | {"exponent of lambda": math.nan}, *rows], 0.005)  # the lattice is known without lambda
+    assert sealed["permeability"].interval == pytest.approx(0.03 * 4e-9)
 
 
 def test_a_number_that_one_packing_lacks_is_left_out():

@@ -99,6 +99,7 @@ class Initial:
 
 def initial_figure(snapshot: Snapshot, shown: Initial) -> Figure:
     """The picture: the state to scale, labels beside it (below a wide box) with a line to what each names, the lens."""
+    shown = replace(shown, look=_present(snapshot, shown.look))
     found = survey([snapshot], replace(shown.look, field="", arrows=0))
     found.view = _with_room(found.view)
     place = _Place(found, shown)
@@ -128,6 +129,15 @@ def initial_figure(snapshot: Snapshot, shown: Initial) -> Figure:
                       borderpad=0, borderaxespad=0)  # fmt: skip
     fit_ticks(figure, [axes])
     return figure
+
+
+def _present(snapshot: Snapshot, look: Look) -> Look:
+    """The look with the kinds alone that the state has."""
+    cloud = look.drawn(snapshot)
+    if not look.kinds or cloud is None:
+        return look
+    there = np.unique(cloud.data[look.colouring(cloud)])
+    return replace(look, kinds={kind: value for kind, value in look.kinds.items() if kind in there})
 
 
 def initial_pixels(snapshot: Snapshot, shown: Initial) -> AnyArray:
@@ -211,12 +221,13 @@ class _Place:
         self.title = _lines(found.look.title, 60 if aspect < 0.5 else 90)
         head = 0.3 + LINE * len(self.title) + 0.45 * self.lying
         lens = LENS if shown.lens is not None else 0.0
+        titled = max(lens, len(shown.lens.text) * 0.085) if shown.lens is not None else 0.0
         legend = LINE * len(shown.look.kinds)
         if self.lying:
             self.box = (MARGIN, head, wide, high)
             self.rows, depth = self._flags(wide)
             low = head + high + 0.2 + depth * LINE + PAD
-            self.lens, self.legend = (MARGIN, low + LINE, lens, lens), (MARGIN + lens + PAD, low, 0.0, 0.0)
+            self.lens, self.legend = (MARGIN, low + LINE, lens, lens), (MARGIN + titled + PAD, low, 0.0, 0.0)
             self.width = MARGIN + wide + PAD + max(self.overhang - wide, 0.0)
             self.height = low + max(lens + LINE + PAD if lens else 0.0, legend) + 0.1
             return
@@ -227,9 +238,8 @@ class _Place:
         self.lens = (aside, head + LINE, lens, lens)
         self.legend = (aside, head + (lens + 2 * LINE if lens else 0.0), 0.0, 0.0)
         widest = max([len(it) for it in self.title], default=0) * 0.09 + 0.2
-        lens_wide = max(lens, len(shown.lens.text) * 0.075) if shown.lens else 0.0
         kinds = 2.0 if shown.look.kinds else 0.0
-        self.width = max(aside + max(lens_wide, kinds) + PAD, widest)
+        self.width = max(aside + max(titled, kinds) + PAD, widest)
         self.height = head + max(tall, lens + legend + 3 * LINE if lens else legend) + 0.65
         self.spread = head, tall
 

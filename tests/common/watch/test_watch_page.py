@@ -63,7 +63,7 @@ def test_frames_and_charts_grow_while_a_run_is_written(page, heard, tmp_path):
     assert {urlsplit(it).netloc for it in heard.requests} == {f"127.0.0.1:{server.server_port}"}
 
 
-def test_a_frame_that_is_looked_at_stays_and_a_run_that_begins_anew_is_shown_anew(page, tmp_path):
+def test_a_frame_that_is_looked_at_stays_and_a_run_that_begins_anew_is_shown_anew(page, heard, tmp_path):
     toy_run(tmp_path)
     with watched(page, tmp_path) as server:
         page.goto(server.link)
@@ -76,6 +76,8 @@ def test_a_frame_that_is_looked_at_stays_and_a_run_that_begins_anew_is_shown_ane
         assert page.evaluate("document.getElementById('page').report.player.at") == 0
         toy_run(tmp_path, 0.02, overwrite=True)
         shows(page, "report?.meta.times.length === 3 && report.drawn?.step === 20")
+    # A table or frame may go between the answer that names it and the question for it: the browser notes a 404.
+    heard.errors[:] = [line for line in heard.errors if "404" not in line]
 
 
 def test_a_page_without_a_run_becomes_that_of_the_run(page, tmp_path):

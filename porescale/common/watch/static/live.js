@@ -93,7 +93,7 @@ export async function follow(element, source, { ends = false, back = "" } = {}) 
   const look = async () => {
     if (seen && !element.isConnected) return true;
     const state = await source.state();
-    say(progress(state), state.outcome);
+    if (seen) say(progress(state), state.outcome); // at first it says that it reads, until there is a picture
     const anew = !seen || state.epoch !== seen.epoch || (!seen.steps.length && state.steps.length > 0);
     if (anew) {
       source.about = null;
@@ -102,6 +102,7 @@ export async function follow(element, source, { ends = false, back = "" } = {}) 
       element.append(place);
       report = await openReport(place, source);
       await report.player?.seek(state.steps.length - 1);
+      say(progress(state), state.outcome);
     } else if (grown(state, seen)) await report.refresh();
     seen = state;
     element.report = report;
