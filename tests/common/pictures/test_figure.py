@@ -1,14 +1,19 @@
 """Figures and films of what is asked for; what cannot be had is refused in a line and leaves nothing behind."""
 
+from dataclasses import replace
+
 import av
 import cv2
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 from porescale.common.core.errors import InputError
+from porescale.common.pictures.axes import draw
 from porescale.common.pictures.choose import Wanted, with_section
 from porescale.common.pictures.figure import figure_of, write_figure
+from porescale.common.pictures.initial import Feature, Initial, initial_pixels
 from porescale.common.pictures.look import PLATE, Look, rgb, round_off, scale, survey
 from porescale.common.pictures.picture import Painter
 from porescale.common.record import card, snapshots
@@ -91,6 +96,21 @@ def test_what_cannot_be_had_is_refused_in_a_line(jet, tmp_path, words, said):
         write_figure([jet], Wanted(**words))
     assert len(error.value.faults) == 1
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_dollars_in_a_title_are_no_formula(jet):
+    run, look = jet
+    title = r"cost of $\frac$"  # no formula that matplotlib can read
+    figure = figure_of([(run, replace(look, title=title))], Wanted(size=300))
+    figure.canvas.draw()
+    assert title in " ".join(it.get_text() for it in figure.texts)
+    Painter(survey([run.snapshot(-1)], replace(look, title=title)))
+    initial_pixels(
+        run.snapshot(-1), Initial(replace(look, title=title), [Feature("side", title, path=((0, 0), (0, HIGH)))])
+    )
+    axes = Figure().add_subplot()
+    draw(run.snapshot(-1), replace(look, title=title), axes)
+    axes.figure.canvas.draw()
 
 
 def test_the_ending_of_a_file_may_be_in_capitals(jet, tmp_path):
