@@ -85,8 +85,9 @@ def known(rows: Sequence[Mapping[str, float]], ratio_error: float = 0.0) -> dict
     names = [name for name in UNITS if all(math.isfinite(row.get(name, math.nan)) for row in rows)]
     made = {name: Known(tuple(float(row[name]) for row in rows), UNITS[name]) for name in names}
     for name, power in OWN_LENGTHS.items():
-        if name in made and {"lattice error", "exponent of lambda"} <= made.keys():
-            of_lambda = (made["exponent of lambda"].mean - power) * ratio_error
+        if name in made and "lattice error" in made:
+            exponent = made.get("exponent of lambda")  # absent where wider discs seal a packing, which is a doubt
+            of_lambda = (exponent.mean - power) * ratio_error if exponent else 0.0
             share = math.hypot(made["lattice error"].mean, of_lambda)
             made[name] = Known(made[name].values, made[name].unit, abs(made[name].mean) * share)
     return made

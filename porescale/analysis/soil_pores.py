@@ -2,7 +2,7 @@
 
 Flow along y through the whole periodic cell, discs with the radius used in the fluid, lambda times theirs.  The error
 of the lattice is of second order, so that it is a third of what half the cells change.  How K follows lambda is
-measured on the coarser one, with discs larger by STEP: K ~ lambda^exponent.
+measured on the coarser one, with discs larger by STEP: K ~ lambda^exponent; no number where these seal the pores.
 """
 
 import math
@@ -28,10 +28,17 @@ def flow_numbers(position: Floats, radius: Floats, side: float, cells: int) -> d
         "permeability over hydraulic diameter squared": fine.relative,
         "hydraulic solid fraction": fine.solid_fraction,
         "lattice error": abs(k - coarse.permeability) / ((2**ORDER - 1) * k),
-        "exponent of lambda": math.log(wider.permeability / coarse.permeability) / math.log1p(STEP),
+        "exponent of lambda": exponent(coarse, wider),
         "cells": fine.cells,
         "steady": float(fine.steady and coarse.steady),
     }
+
+
+def exponent(coarse: Measured, wider: Measured) -> float:
+    """s of K ~ lambda^s from discs as they are and ``wider`` by STEP; nan where nothing steady flows past either."""
+    ratio = wider.permeability / coarse.permeability if coarse.permeability > 0.0 else 0.0
+    flows = ratio > 0.0 and coarse.steady and wider.steady
+    return math.log(ratio) / math.log1p(STEP) if flows else math.nan
 
 
 def _through(position: Floats, radius: Floats, side: float, cells: float) -> Measured:

@@ -159,7 +159,12 @@ def _lambda(grains: Grains, packing_fraction: float, wanted: float | None, out: 
     for what, target, whose in targets:
         found = ratio_for(target, packing_fraction)
         text = "none" if found is None else f"{found:.3f}"
-        out.row(f"lambda for {what}", text, "", f"K/d² = {target:.3g} {whose}; by Gebart, within a tenth of K")
+        out.row(
+            f"lambda for {what}",
+            text,
+            "",
+            f"K/d² = {target:.3g} {whose}; by Gebart, K within a tenth at 0.8, a third at 0.9",
+        )
 
 
 def _contact(derived: Derived, out: Report) -> None:

@@ -258,6 +258,7 @@ def about(
         "grains": request.grains, "diameter": packing.diameter,
         "grain_density": MaterialPlan.of(scene).density(packing.material),
         "settling_friction": packing.settling_friction,
+        "settling_rolling_friction": packing.settling_rolling_friction,
         "pressure": pressure_of(scene), "stiffness_over_pressure": hard, "inertial_number": request.inertial_number,
         "strain": request.strain, "doubts": doubts,
     }  # fmt: skip

@@ -148,7 +148,9 @@ def rose_of(snapshot: Snapshot, look: Look) -> Figure:
         axes.plot(around, fitted, color="#2f6fb0", label=f"fabric: a = {a:.2f} at {np.degrees(turned):.0f}°")
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, -0.16), ncols=3, fontsize=8, frameon=False)
     axes.set_yticklabels([])
-    axes.set_title(f"{look.title}: {len(force)} contacts, {time_text(snapshot.time, snapshot.time)}", fontsize=10)
+    axes.set_title(
+        f"{look.title}: {len(force)} contacts, {time_text(snapshot.time, snapshot.time)}", fontsize=10, parse_math=False
+    )
     return figure
 
 
@@ -195,7 +197,7 @@ def _stage(look: Look, title: str) -> tuple[Figure, Axes, float, float]:
     axes.set(xlim=(left * factor, right * factor), ylim=(bottom * factor, top * factor))
     axes.set_xlabel(f"x ({unit})")
     axes.set_ylabel(f"y ({unit})")
-    axes.set_title(title, loc="left", fontsize=10)
+    axes.set_title(title, loc="left", fontsize=10, parse_math=False)
     return figure, axes, factor, 72.0 * wide / (right - left)
 
 

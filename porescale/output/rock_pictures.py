@@ -36,7 +36,7 @@ def drawn(strain: np.ndarray, stress: np.ndarray, broken: np.ndarray, title: str
     factor, unit = (1e-3, "kPa") if np.abs(stress).max() < 1e6 else (1e-6, "MPa")
     axes.plot(100.0 * strain, factor * stress, color="#23303d", lw=1.2)
     axes.set(xlabel="strain (%), > 0 pulled", ylabel=f"stress ({unit}), > 0 tension")
-    axes.set_title(title, loc="left", fontsize=10)
+    axes.set_title(title, loc="left", fontsize=10, parse_math=False)
     axes.axhline(0.0, color="#b5ab98", lw=0.6)
     rows = np.unique(np.linspace(0, len(strain) - 1, BINS + 1).round().astype(int))
     counts = axes.twinx()

@@ -1,8 +1,12 @@
 """Which lambda gives a bed of discs a wanted permeability, and that `check` says it."""
 
+import math
+from dataclasses import replace
+
 import pytest
 
-from porescale.analysis.permeability import bed_of_spheres, gebart, ratio_for
+from porescale.analysis.permeability import Measured, bed_of_spheres, gebart, ratio_for
+from porescale.analysis.soil_pores import STEP, exponent
 from porescale.builders.report import report
 from porescale.builders.scene import Scene
 from porescale.common.schema.sections import load
@@ -51,3 +55,10 @@ def test_check_says_which_lambda_gives_what_is_wanted():
     # What it proposes has what is wanted.
     again = rows(f"grains.hydraulic_radius_ratio={wanted['lambda for permeability.wanted']}")
     assert again["K/d² by Gebart"] == pytest.approx(0.002, rel=13 * 5e-4 / 0.8)
+
+
+def test_an_exponent_of_lambda_is_a_number_only_where_wider_discs_leave_pores_open():
+    bed = Measured(1e-9, 1e-3, 0.5, 1e-3, 6.0, True, 1000)
+    assert exponent(bed, replace(bed, permeability=1e-9 * (1.0 + STEP) ** -8)) == pytest.approx(-8.0, rel=1e-12)
+    for sealed in (replace(bed, permeability=0.0), replace(bed, permeability=-1e-20), replace(bed, steady=False)):
+        assert math.isnan(exponent(bed, sealed))

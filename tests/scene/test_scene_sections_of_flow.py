@@ -44,6 +44,7 @@ def said(make: Any, **changes: Any) -> str:
         ("domain__left", {"kind": "velocity"}, "is missing"),
         ("domain__left", {"kind": "wall", "pressure": 1.0}, 'belongs to a side of kind "pressure"'),
         ("probe", [{"x": 1.0, "y": 0.0}], "is outside the box"),
+        ("look", {"view": [0.0, 1.0, 0.0, 0.001]}, "look.view = '(1, 0.001)': is outside the box"),
         ("flux", [{"start": [0.0, 0.0], "end": [0.0, 0.0]}], "is the same as start"),
         ("loads", {"discs": [3]}, "there is no such disc (allowed: 0 to 0)"),
         ("loads", {"grains": [0]}, "there is no such grain"),

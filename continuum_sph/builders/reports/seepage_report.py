@@ -37,7 +37,7 @@ def seepage_report(scene: Scene) -> Report:
     out.row("soil particles", len(soil))
     out.heading("soil and water")
     stiff = state.density * state.sound_speed**2
-    step = law.limits(0.0, 0.0)[0]  # of air beside water
+    step = min(law.limits(0.0, state.sound_speed / law.smoothing.length))  # of air beside water, too
     if scene.gravity > 0.0:
         drag = section.permeability / (section.porosity * scene.gravity)
         out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
@@ -86,15 +86,23 @@ def pile_report(scene: Scene, out: Report) -> None:
     spacing, tip = scene.numerics.spacing, scene.pile.tip
     buried = ground_at(soil_section(scene), sheet_pile(scene.pile, spacing).x) - tip
     out.heading("sheet pile")
+    if buried <= 0.0:
+        out.row("rows of ground beside it", 0.0)
+        out.warn("the pile does not reach into the ground at the start: exit gradient () will be nan; lower pile.tip")
+        return
     out.row("rows of ground beside it", buried / spacing, "", f"at least {LEAST:g} for an exit gradient")
     out.row("rows of ground below it", tip / spacing, "", f"at least {LEAST_BELOW:g}")
     if not resolved(buried, spacing):
         out.warn(
             f"the pile is {buried / spacing:.2g} rows deep in the ground: exit gradient () will be nan, as it is fit "
             "to what lies between the first row and the tip; "
-            f"numerics.spacing = {max(0.0, buried) / LEAST:.2g} mends it"
+            f"numerics.spacing = {buried / LEAST:.2g} mends it"
         )
-    if tip < LEAST_BELOW * spacing:
+    if tip == 0.0:
+        out.warn(
+            "pile.tip = 0 does not close the ground: the column of the pile ends a row above the base, and water passes"
+        )
+    elif tip < LEAST_BELOW * spacing:
         out.warn(
             f"{tip / spacing:.2g} rows of ground lie below the pile, whose column ends a row higher: discharges are "
             f"more than 2 % high; numerics.spacing = {tip / LEAST_BELOW:.2g} mends it"

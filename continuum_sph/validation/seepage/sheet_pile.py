@@ -230,6 +230,3 @@ def flow_row(share: float) -> None:
 
 for depth in SHARES:
     flow_row(depth)
-
-BETWEEN = 0.525
-"""s/T whose tip lies in the middle of a row of 20."""

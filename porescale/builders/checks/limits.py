@@ -17,7 +17,8 @@ CELLS_THICK = 2.0
 """A rectangle thinner than this may fill no cell wholly, wherever it lies, and lets fluid through."""
 SOUND_WARN = 0.3
 """Angle of an oscillation in which sound crosses the box, rad: it changes pressures by its square, a tenth.  In the map
-(coupling.sound) damping is right up to it with 5 cells per diameter and more."""
+(coupling.sound) damping is right up to it with exact walls and the operator with two relaxation times, with 5 cells per
+diameter and more."""
 RING_CELLS = 4.0
 """Fewest cells across the hole of a ring."""
 SMALLEST = 0.7

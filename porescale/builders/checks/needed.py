@@ -87,6 +87,9 @@ def check_places(scene: Scene) -> list[Fault]:
     for k, region in enumerate(scene.region):
         corners = ("lower", region.lower), ("upper", region.upper)
         points += [(f"region[{k}].{end}", at) for end, at in corners if not any(scene.domain.periodic)]
+    if scene.look and scene.look.view:
+        left, right, bottom, top = scene.look.view
+        points += [("look.view", (left, bottom)), ("look.view", (right, top))]
     if scene.permeability and (window := scene.permeability.window):
         points.append(("permeability.window", (window.left, window.bottom)))
         points.append(("permeability.window", (window.left + window.width, window.bottom + window.height)))

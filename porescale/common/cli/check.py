@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from porescale.common.api.folders import require_writable
 from porescale.common.cli.options import Json, Quality, Scene, Settings, require_scene
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
@@ -57,6 +58,7 @@ def drawing(file: Path = Path("scene.png")) -> Path:
         raise InputError(Fault("--picture", str(file), "is no PNG file", repair=f"name it {file.stem or 'scene'}.png"))
     if file.is_dir():
         raise InputError(Fault("--picture", str(file), "is a folder", repair="name a file"))
+    require_writable(file.parent, "--picture")
     return file
 
 

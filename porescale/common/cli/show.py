@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from porescale.common.api.folders import require_writable
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.read_card import NAME as CARD
@@ -68,6 +69,8 @@ def _figure(package: Package, folder: Path, asked: Asked) -> Path:
         _parts(asked.times), asked.every, asked.fps, asked.style, asked.format,
     )  # fmt: skip
     wanted.kind(asked.out)
+    if asked.out is not None:
+        require_writable(asked.out.parent, "--out")
     runs = [folder, *([asked.against] if asked.against is not None else [])]
     looked = []
     for each in runs:

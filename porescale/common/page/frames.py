@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from porescale.common.page.quantise import ALIGNED, Packed, Precision
+from porescale.common.record.card import plain
 from porescale.common.record.model import Cloud, Grid, Snapshot
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def pack(snapshot: Snapshot, look: Look, precision: Precision, first: Snapshot |
         name: _cloud(packed, cloud, precision, first.clouds.get(name) if first else None)
         for name, cloud in snapshot.clouds.items()
     }
-    text = json.dumps(head, separators=(",", ":")).encode()
+    text = json.dumps(plain(head), separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-(4 + len(text)) % ALIGNED)
     return struct.pack("<I", len(text)) + text + bytes(packed.content)
 

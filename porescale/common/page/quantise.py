@@ -2,7 +2,7 @@
 
 A value is ``low + step * code``.  The largest code stands for what is no number.  Codes of two bytes and more lie apart
 by bytes, the lowest first, and codes of cells are differences from the cell to the left: both make them smaller when
-they are deflated.  `page.js` (decode) turns them back.
+they are deflated.  `values.js` (decode) turns them back.
 """
 
 from __future__ import annotations
@@ -102,5 +102,5 @@ def _whole_bytes(parts: list[AnyArray]) -> int:
 
 
 def _rounding(values: AnyArray) -> float:
-    """Error of single precision in the page."""
-    return HALF_ULP * float(np.nanmax(np.abs(values), initial=0.0))
+    """Error of single precision in the page, of what is finite."""
+    return HALF_ULP * float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

@@ -50,9 +50,9 @@ def draw(snapshot: Snapshot, look: Look, axes: Axes, *, bar: bool = True) -> Axe
     left, right, bottom, top = found.view
     time = time_text(snapshot.time, found.longest, look.plain)
     if right - left < NARROW * (top - bottom):
-        axes.set_title(f"{look.title}\n{time}" if look.title else time, loc="left")
+        axes.set_title(f"{look.title}\n{time}" if look.title else time, loc="left", parse_math=False)
     else:
-        axes.set_title(look.title, loc="left")
+        axes.set_title(look.title, loc="left", parse_math=False)
         axes.set_title(time, loc="right")
     draw_inside(snapshot, found, axes)
     root = axes.get_figure(root=True)

@@ -90,7 +90,8 @@ class Wanted:
         if self.fps is not None and chosen not in FILMS:
             repair = f"choose {' or '.join(FILMS)}, or leave fps out"
             raise InputError(Fault("fps", self.fps, f"is of films, {chosen} is a still", repair=repair))
-        for key, most in (("fps", 120), ("every", 1_000_000)):
+        fastest = 50 if chosen == "gif" else 120  # browsers show frames of a GIF for 20 ms at least
+        for key, most in (("fps", fastest), ("every", 1_000_000)):
             value = getattr(self, key)
             if value is not None and not 1 <= value <= most:
                 raise InputError(Fault(key, value, "is out of range", allowed=f"1 to {most}"))

@@ -158,6 +158,6 @@ def _film(
 
     with Watch("film", first, last) as watch:
         watch.enter("painting")
-        if path.suffix == ".gif":
+        if path.suffix.lower() == ".gif":
             return write_gif(path, painted(watch), rate)
         return write_film(path.with_suffix(""), painted(watch), rate)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -118,7 +119,8 @@ def initial_figure(snapshot: Snapshot, shown: Initial) -> Figure:
         _draw(axes, feature, factor)
     place.labels(figure)
     for row, line in enumerate(place.title):
-        figure.text(0.15 / place.width, 1 - (0.25 + row * LINE) / place.height, line, fontsize=1.1 * FONT)
+        down = 1 - (0.25 + row * LINE) / place.height
+        figure.text(0.15 / place.width, down, line, fontsize=1.1 * FONT, parse_math=False)
     if shown.lens is not None:
         _magnified(axes, place.axes(figure, place.lens), snapshot, found, shown.lens)
     if shown.look.kinds:
@@ -280,7 +282,8 @@ class _Place:
             feature = self.features[k]
             anchor = self._at(feature.anchor)
             colour = COLOURS[feature.kind]
-            figure.text(x / self.width, 1 - y / self.height, feature.label, fontsize=FONT, color=colour, va="center")
+            how: dict[str, Any] = {"fontsize": FONT, "color": colour, "va": "center", "parse_math": False}
+            figure.text(x / self.width, 1 - y / self.height, feature.label, **how)
             ends = [(anchor[0], anchor[1]), (x - 0.05, y)]
             if self.lying:
                 ends = [(anchor[0], anchor[1]), (anchor[0], y), (x - 0.03, y)]

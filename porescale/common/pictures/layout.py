@@ -91,9 +91,10 @@ class Stage:
         return self.figure.add_axes((x / full_x, 1 - (y + height) / full_y, width / full_x, height / full_y))
 
     def text(self, x: float, y: float, text: str, **how: Any) -> None:
-        """Text whose baseline is at dots counted from the upper left corner."""
+        """Text whose baseline is at dots counted from the upper left corner; a $ in it is no formula."""
         full_x, full_y = self.full
-        self.figure.text(x / full_x, 1 - y / full_y, text, **{"fontsize": self.font, "va": "baseline", **how})
+        how = {"fontsize": self.font, "va": "baseline", "parse_math": False, **how}
+        self.figure.text(x / full_x, 1 - y / full_y, text, **how)
 
 
 def stage(found: Survey, headers: Sequence[str], style: Style, *, blank: bool = False) -> Stage:

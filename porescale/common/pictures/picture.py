@@ -176,7 +176,7 @@ def png(image: AnyArray) -> bytes:
 def _text(text: str, points: float, dpi: int) -> AnyArray:
     """Text in the axes' font on white, as a tight RGB image."""
     figure = Figure((0.75 * len(text) * points / 72, 1.6 * points / 72), dpi=dpi)
-    figure.text(1.0, 0.25, text, fontsize=points, ha="right", va="baseline")
+    figure.text(1.0, 0.25, text, fontsize=points, ha="right", va="baseline", parse_math=False)
     return _pixels(figure)
 
 

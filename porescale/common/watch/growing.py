@@ -146,7 +146,7 @@ def last_value(path: Path, column: str = TIME) -> float | None:
             size = file.seek(0, 2)
             file.seek(max(len(head), size - TAIL))
             rows = file.read()
-        last = rows[: rows.rfind(b"\n")].rpartition(b"\n")[2]
+        last = rows.rpartition(b"\n")[0].rpartition(b"\n")[2]
         names, cells = (next(csv.reader([line.decode()]), []) for line in (head, last))
         return float(cells[names.index(column)]) if len(cells) == len(names) else None
     except (OSError, ValueError):

@@ -14,7 +14,7 @@ from porescale.common.page.meta import frames_of, meta, shown
 from porescale.common.page.quantise import Precision
 from porescale.common.page.tables import names, table
 from porescale.common.page.texts import verdicts
-from porescale.common.record.card import RUNNING, plain
+from porescale.common.record.card import plain
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.watch.growing import Growing, inside
 from porescale.common.watch.server import Answer
@@ -59,7 +59,7 @@ class Data:
             case ["state"]:
                 return _json(growing.state())
             case ["meta"]:
-                return _json(growing.ask(lambda run: meta(run, precision(run)) | self._said(run)))
+                return _json(growing.ask(lambda run: meta(run, precision(run))))
             case ["news"]:
                 return _json(growing.ask(self._news))
             case ["frame", number] if number.isdecimal() and number.isascii() and len(number) < 12:
@@ -71,16 +71,11 @@ class Data:
     def _news(self, run: Run) -> dict[str, Any]:
         """The part of `meta` that changes while a run writes; ranges of colours are looked for now and then only."""
         found = {"tables": names(run), "outcome": run.outcome, "problem": str(run.card.get("problem") or ""),
-                 "card": run.card, **frames_of(run, precision(run)), **self._said(run)}  # fmt: skip
+                 "card": run.card, **frames_of(run, precision(run)), "verdicts": verdicts(run)}  # fmt: skip
         if len(run) >= GROWN * self._ranged or run.outcome != self._outcome:
             self._ranged, self._outcome = len(run), run.outcome
             found |= shown(run)
         return found
-
-    def _said(self, run: Run) -> dict[str, Any]:
-        """Verdicts, of a run that is at its end."""
-        note = "What is expected is for the end of the run, which is running."
-        return {"verdicts": {"note": note, "rows": []} if run.outcome == RUNNING else verdicts(run)}
 
     def _frame(self, number: int) -> Answer | None:
         def packed(run: Run) -> bytes | None:
@@ -114,6 +109,7 @@ class Site:
         self.folder, self.program = folder, program
         self._run = Data(Growing(folder, program))
         self._points: Points | None = None
+        self._of_points: dict[str, Data] = {}
 
     def __call__(self, parts: Sequence[str]) -> Answer | None:
         """The answer for the parts of a path after the token."""
@@ -140,7 +136,8 @@ class Site:
                 growing = self._points.run(name)
                 if growing is None:
                     return None
-                return page("point", name) if rest == [""] else Data(growing)(rest)
+                data = self._of_points.setdefault(name, Data(growing))
+                return page("point", name) if rest == [""] else data(rest)
         return None
 
 

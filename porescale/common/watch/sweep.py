@@ -38,8 +38,10 @@ class Points:
 
     def run(self, name: str) -> Growing | None:
         """The run of that name; None where there is none."""
-        if name not in self.names():
-            return None
+        return self._growing(name) if name in self.names() else None
+
+    def _growing(self, name: str) -> Growing:
+        """The run in a folder, the same object each time."""
         return self._runs.setdefault(name, Growing(self.folder / name, self.program))
 
     def rows(self) -> list[dict[str, Any]]:
@@ -58,9 +60,8 @@ class Points:
             "numbers": {},
             "picture": False,
         }
-        growing = self.run(name)
+        growing = self._growing(name)
         try:
-            assert growing is not None
             card, row["state"] = growing.run().card, growing.state()
         except (InputError, OSError) as error:
             return row | {"problem": " ".join(str(error).split())}

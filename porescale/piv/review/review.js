@@ -10,7 +10,7 @@ const RATES = [0.5, 0.7, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 12];
 const APART = 13;
 const CLICK = 5;
 
-/** Show a pair: see page.py for `data`. */
+/** Show a pair: see review.py for `data`. */
 export async function openReview(data) {
   const pictures = await Promise.all(data.pictures.map(loaded));
   setMaps(data.maps);

@@ -257,6 +257,13 @@ def test_a_damaged_or_foreign_card_is_one_line(decay, content: str, words: str) 
     assert decay("run", "decay", "--overwrite")[0] == 0
 
 
+def test_a_place_that_cannot_be_written_is_refused_before_anything_is_drawn(decay) -> None:
+    decay("run", "decay")
+    Path("file").write_text("")
+    assert "--out = 'file': cannot be written" in refused(decay, "show", "runs/decay", "--out", "file/own.png")
+    assert "--picture = 'file': cannot be written" in refused(decay, "check", "decay", "--picture", "file/own.png")
+
+
 def test_a_card_whose_scene_lacks_what_every_scene_has_is_not_shown(toy) -> None:
     Path("card.json").write_text('{"package": "toy", "scene": {"duration": 1}}')
     assert "its scene has no decay" in refused(toy, "show", ".")

@@ -56,6 +56,12 @@ def test_a_correlated_series_is_worth_as_many_values_as_its_correlation_says(phi
     assert covered(draws, widths) == pytest.approx(LEVEL, abs=0.044)  # four times sqrt(0.95 · 0.05/400)
 
 
+def test_few_independent_values_are_found_as_more_and_no_more_than_thrice_as_many():
+    # What is stated: 7 to 18 of 5 in two series of three; the median of 400 is good to a tenth.
+    found = np.median([independent(row) for row in ar1(0.9, 100, 400)])
+    assert 1.5 < found / (100 * 0.1 / 1.9) < 3.0
+
+
 def test_a_correlated_series_taken_for_independent_promises_too_much():
     draws = ar1(0.9, 4000, 400)
     assert covered(draws, np.array([half_width(row) for row in draws])) < 0.5

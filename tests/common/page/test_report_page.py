@@ -135,6 +135,13 @@ def test_a_page_holds_every_frame_table_and_text(run, written):
     assert "same" not in later["clouds"]["grains"]["arrays"]["position"]
 
 
+def test_a_run_that_has_not_ended_is_not_held_against_what_is_expected_of_its_end(run):
+    running = open_run(run.folder, PROGRAM)
+    running.card["outcome"] = "running"
+    note = "What is expected is for the end of the run, which is running."
+    assert meta(running)["verdicts"] == {"note": note, "rows": []}
+
+
 def test_the_page_of_a_run_that_ends_says_that_it_has(run, folder):
     before = (folder / "card.json").read_text(encoding="utf-8")
     (folder / "card.json").write_text(before.replace('"finished"', '"running"'), encoding="utf-8")

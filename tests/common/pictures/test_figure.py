@@ -1,14 +1,19 @@
 """Figures and films of what is asked for; what cannot be had is refused in a line and leaves nothing behind."""
 
+from dataclasses import replace
+
 import av
 import cv2
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 from porescale.common.core.errors import InputError
+from porescale.common.pictures.axes import draw
 from porescale.common.pictures.choose import Wanted, with_section
 from porescale.common.pictures.figure import figure_of, write_figure
+from porescale.common.pictures.initial import Feature, Initial, initial_pixels
 from porescale.common.pictures.look import PLATE, Look, rgb, round_off, scale, survey
 from porescale.common.pictures.picture import Painter
 from porescale.common.record import card, snapshots
@@ -76,6 +81,7 @@ def test_every_format_is_written_whole(jet, tmp_path, kind):
         ({"every": 0}, "every"),
         ({"fps": 10, "format": "svg"}, "svg is a still"),
         ({"format": "tiff"}, "png, pdf, svg, mp4, gif"),
+        ({"format": "gif", "fps": 51}, "1 to 50"),
         ({"style": "poster"}, "paper, talk"),
         ({"size": 3}, "200 to 8000"),
         ({"size": "3 km"}, "size"),
@@ -90,6 +96,27 @@ def test_what_cannot_be_had_is_refused_in_a_line(jet, tmp_path, words, said):
         write_figure([jet], Wanted(**words))
     assert len(error.value.faults) == 1
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_dollars_in_a_title_are_no_formula(jet):
+    run, look = jet
+    title = r"cost of $\frac$"  # no formula that matplotlib can read
+    figure = figure_of([(run, replace(look, title=title))], Wanted(size=300))
+    figure.canvas.draw()
+    assert title in " ".join(it.get_text() for it in figure.texts)
+    Painter(survey([run.snapshot(-1)], replace(look, title=title)))
+    initial_pixels(
+        run.snapshot(-1), Initial(replace(look, title=title), [Feature("side", title, path=((0, 0), (0, HIGH)))])
+    )
+    axes = Figure().add_subplot()
+    draw(run.snapshot(-1), replace(look, title=title), axes)
+    axes.figure.canvas.draw()
+
+
+def test_the_ending_of_a_file_may_be_in_capitals(jet, tmp_path):
+    path = write_figure([jet], Wanted(size=300, every=2), tmp_path / "own.GIF")
+    assert path == tmp_path / "own.GIF"
+    assert path.read_bytes().startswith(b"GIF8")
 
 
 def test_two_runs_stand_beside_each_other_with_the_colours_of_both(jet, tmp_path):

@@ -70,6 +70,7 @@ def test_a_torn_last_row_and_an_empty_table_are_read_up_to_what_is_whole(tmp_pat
     for content, expected in (
         (b"", None), (b"time (s),a (m)", None), (b"time (s),a (m)\n", None), (b"time (s),a (m)\n0.5,1\n", 0.5),
         (b"time (s),a (m)\n0.5,1\n0.75", 0.5), (b"time (s),a (m)\n0.5,1\n0.75,2\n", 0.75), (b"a,b\n1,2\n", None),
+        (b"time (s),a (m)\n0.5,1.5", None),
     ):  # fmt: skip
         path.write_bytes(content)
         assert last_value(path) == expected, content

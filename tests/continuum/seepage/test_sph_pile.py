@@ -199,6 +199,11 @@ def test_check_says_why_a_pile_has_no_exit_gradient_and_where_too_little_ground_
     assert "exit gradient" not in warnings(0.2)
     assert "below the pile" not in warnings(0.2)
     assert "below the pile" in warnings(0.1)
+    assert "pile.tip = 0 does not close the ground" in warnings(0.0)
+    beyond = scene(pile={"x": 0.75, "tip": 0.4}, soil={"body": [{"outline": [[0, 0], [0.5, 0], [0, 0.3]]}]})
+    said = " ".join(seepage_report(beyond).warnings)
+    assert "does not reach into the ground" in said
+    assert "inf" not in said
 
 
 def test_a_pile_stands_in_soil():

@@ -326,6 +326,7 @@ class Report {
   /** Keys anywhere but in fields: play, step. */
   key(event) {
     const { target } = event;
+    if (!this.element.isConnected) return; // another page of the run stands in its place
     if (event.ctrlKey || event.altKey || event.metaKey || event.shiftKey) return;
     if (/^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName) && target.type !== "checkbox" && !(target === this.player.slider && event.key === " ")) return;
     if (event.key === " " && /^(BUTTON|SUMMARY|A|INPUT)$/.test(target.tagName) && target !== this.player.slider) return;

@@ -113,7 +113,7 @@ export function decode(buffer, start, spec, count) {
       if (size > 2) code += bytes[2 * total + place] * 65536 + bytes[3 * total + place] * 16777216;
       if (spec.across) {
         if (k % spec.across === 0) left = 0;
-        left = (left + code) & none;
+        left = ((left + code) & none) >>> 0; // of four bytes & gives a signed number
         code = left;
       }
       values[k] = code === none && !spec.whole ? NaN : low + step * code;
