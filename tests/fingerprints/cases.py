@@ -27,6 +27,7 @@ SCENES: dict[str, tuple[str, int, str | None, tuple[str, ...]]] = {
     "lifting_gate/scene.toml": (GRAINS, 200, "draft", ()),
     "own_law/scene.toml": (GRAINS, 2000, None, ()),
     "permeameter/scene.toml": (GRAINS, 80, "draft", ()),
+    "levee_by_suction/scene.toml": (CONTINUUM, 100, "draft", ()),
     "piston/scene.toml": (GRAINS, 200, "draft", ()),
     "rising_bubble/scene.toml": (CONTINUUM, 100, "draft", ()),
     "settling_disc/scene.toml": (GRAINS, 200, "draft", ()),
