@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import zlib
 from base64 import b64encode
 from collections.abc import Iterator, Sequence
@@ -19,7 +18,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.page.frames import kept, pack
 from porescale.common.page.meta import meta
 from porescale.common.page.quantise import Precision
-from porescale.common.page.scripts import joined, static
+from porescale.common.page.scripts import filled, joined, static
 from porescale.common.page.tables import table
 from porescale.common.record.card import FINISHED, plain
 
@@ -157,7 +156,7 @@ def page(title: str, runs: Sequence[Sequence[tuple[str, bytes]]]) -> str:
         index.append(places)
     parts = {"title": escape(title), "css": static("page.css"), "script": script(), "data": "".join(texts),
              "index": json.dumps(index).replace("<", "\\u003c")}  # fmt: skip
-    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], static("page.html"))
+    return filled(static("page.html"), parts)
 
 
 @cache

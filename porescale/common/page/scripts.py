@@ -1,7 +1,7 @@
 """Files of pages, and JavaScript put together without a build step."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib.resources import files
 
@@ -10,6 +10,11 @@ from importlib.resources import files
 def static(name: str) -> str:
     """The text of a file of ``static``."""
     return files("porescale.common.page").joinpath("static", name).read_text(encoding="utf-8")
+
+
+def filled(text: str, parts: Mapping[str, str]) -> str:
+    """A page with each {{name}} of its ``text`` replaced by the part of that name; KeyError for one without."""
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], text)
 
 
 def joined(texts: Iterable[str]) -> str:

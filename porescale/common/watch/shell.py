@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from functools import cache
 from html import escape
 from importlib.resources import files
 
 from porescale.common.page.page import script
-from porescale.common.page.scripts import joined
+from porescale.common.page.scripts import filled, joined
 from porescale.common.page.scripts import static as of_report
 
 START = {
@@ -25,7 +24,7 @@ START = {
 def shell(kind: str, title: str) -> str:
     """The page of a "run", a "point" of a sweep, a "sweep" or "nothing"."""
     parts = {"title": escape(title), "css": css(), "script": live_script(), "start": START[kind]}
-    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], static("live.html"))
+    return filled(static("live.html"), parts)
 
 
 @cache

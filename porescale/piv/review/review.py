@@ -1,7 +1,6 @@
 """`piv measure --review`: a page, complete in itself, with both pictures of a pair and the vectors over them."""
 
 import json
-import re
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_text
 from porescale.common.core.types import AnyArray
-from porescale.common.page.scripts import joined, static
+from porescale.common.page.scripts import filled, joined, static
 from porescale.piv.estimate.advice import Pair
 from porescale.piv.estimate.rejected import picked
 
@@ -72,7 +71,7 @@ def _page(parts: dict[str, str]) -> str:
     """The page with its parts, styles and scripts in their places."""
     scripts = [static("colours.js"), static("view.js"), _own("vectors.js"), _own("review.js")]
     parts = {"css": static("page.css") + _own("review.css"), "script": joined(scripts), **parts}
-    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], _own("review.html"))
+    return filled(_own("review.html"), parts)
 
 
 def _own(name: str) -> str:
