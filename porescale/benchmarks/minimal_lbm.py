@@ -8,13 +8,12 @@ import numpy as np
 
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange
 from porescale.common.core.types import Reals
-from porescale.lbm.lattice import CX, CY, OPPOSITE
+from porescale.lbm.lattice import CX, CY, OPPOSITE, padded_populations
 
 
 @inline
-def slots_of(f, y, parity):
-    """Nine views of row ``y`` (1 to ny) of f (9, ny + 2, nx + 2) for a step of ``parity``: see lattice.py."""
-    n = f.shape[2] - 2
+def slots_of(f, n, y, parity):
+    """Nine views (n,) of row ``y`` (1 to ny) of f (9, ny + 2, n + 2 or more) for a step of ``parity``: lattice.py."""
     if parity:
         a0, a1, a2 = f[0, y, 1 : n + 1], f[2, y, 0:n], f[1, y, 2 : n + 2]
         a3, a4 = f[4, y - 1, 1 : n + 1], f[3, y + 1, 1 : n + 1]
@@ -54,20 +53,21 @@ def plain_cells(slots, even, odd):
 
 
 @parallel_kernel
-def plain_step(f, parity, even, odd):
-    """Collide and stream all cells: overwrites f (9, ny + 2, nx + 2), shifted populations; ``even``, ``odd`` rates."""
+def plain_step(f, n, parity, even, odd):
+    """Collide and stream all cells of n a row: overwrites f (9, ny + 2, n + 2 or more), shifted populations; ``even``,
+    ``odd`` rates."""
     for y in prange(1, f.shape[1] - 1):
-        plain_cells(slots_of(f, y, parity), even, odd)
+        plain_cells(slots_of(f, n, y, parity), even, odd)
 
 
 @kernel
 def largest_of_rows(f, row, largest):
-    """Overwrites ``largest`` (ny,): the largest size of the shifted populations f (9, ny + 2, nx + 2) of each row, 0
-    where all is at rest, and ``row`` (nx,).  NaNs are not seen."""
+    """Overwrites ``largest`` (ny,): the largest size of the shifted populations f (9, ny + 2, nx + 2 or more) of each
+    row, 0 where all is at rest, and ``row`` (nx,).  NaNs are not seen."""
     for y in range(largest.shape[0]):
         row[:] = 0.0
         for i in range(f.shape[0]):
-            slot = f[i, y + 1, 1:-1]
+            slot = f[i, y + 1, 1 : row.shape[0] + 1]
             for x in range(row.shape[0]):
                 size = abs(slot[x])
                 row[x] = size if size > row[x] else row[x]
@@ -88,10 +88,13 @@ class PlainWater:
     """A closed box of water of nx by ny cells, from the populations (9, ny + 2, nx + 2) of another before step 0."""
 
     def __init__(self, populations: Reals, relaxation_time: float, magic: float = 3 / 16) -> None:
-        self.populations, self.step = populations.copy(), 0
+        _, high, wide = populations.shape
+        self.nx, self.step = wide - 2, 0
+        self.padded = padded_populations(wide - 2, high - 2, populations.dtype)
+        self.populations = self.padded[:, :, :wide]
+        self.populations[...] = populations
         self.even = 1.0 / relaxation_time
         self.odd = 1.0 / (0.5 + magic / (relaxation_time - 0.5))
-        _, high, wide = populations.shape
         links = [
             (i, y, x, y + CY[i], x + CX[i])
             for i in range(1, 9) for y in range(1, high - 1) for x in range(1, wide - 1)
@@ -100,14 +103,14 @@ class PlainWater:
         at = np.array(links)
         out = (at[:, 0], at[:, 3], at[:, 4])
         back = (OPPOSITE[at[:, 0]], at[:, 1], at[:, 2])
-        self.halo = np.ravel_multi_index(out, populations.shape)
-        self.inner = np.ravel_multi_index(back, populations.shape)
-        self._flat = self.populations.reshape(-1)
+        self.halo = np.ravel_multi_index(out, self.padded.shape)
+        self.inner = np.ravel_multi_index(back, self.padded.shape)
+        self._flat = self.padded.reshape(-1)
 
     def advance(self, steps: int) -> None:
         """Advance the water by ``steps`` steps."""
         for _ in range(steps):
-            plain_step(self.populations, self.step % 2, self.even, self.odd)
+            plain_step(self.padded, self.nx, self.step % 2, self.even, self.odd)
             self.close()
 
     def close(self) -> None:

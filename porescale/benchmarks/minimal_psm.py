@@ -200,17 +200,17 @@ def cut(slots, first, count):
 
 
 @kernel
-def wet_rows(f, parity, even, odd, covered, sums, spare, partial, load):
-    """Collide and stream all cells: overwrites f (9, ny + 2, nx + 2) and load (n, 5), see ``take``.
+def wet_rows(f, nx, parity, even, odd, covered, sums, spare, partial, load):
+    """Collide and stream all cells: overwrites f (9, ny + 2, nx + 2 or more) and load (n, 5), see ``take``.
 
     even, odd: rates;  sums (3, BLOCK + nx + more): zero before and after;  spare (4, nx) and partial
     (5 * BLOCK,): scratch.
     """
     corner, width, start, listed = covered.corner, covered.width, covered.start, covered.listed
-    nx, k, spread = f.shape[2] - 2, 1.0 / even - 0.5, 1.0 / odd - 0.5
+    k, spread = 1.0 / even - 0.5, 1.0 / odd - 0.5
     load[:, :] = 0.0
     for y in range(f.shape[1] - 2):
-        slots = slots_of(f, y + 1, parity)
+        slots = slots_of(f, nx, y + 1, parity)
         s, sx, sy = sums[0], sums[1], sums[2]
         left, right = nx, 0
         for entry in range(start[y], start[y + 1]):
@@ -308,7 +308,7 @@ class PlainWet:
                 d["position"], d["velocity"], d["spin"], self._reach, s.spacing, s.step, self._covered, self._lines
             )  # fmt: skip
             wet_rows(
-                water.populations, water.step % 2, water.even, water.odd, self._covered, self._sums, self._spare,
+                water.padded, water.nx, water.step % 2, water.even, water.odd, self._covered, self._sums, self._spare,
                 self._partial, self._load,
             )  # fmt: skip
             water.close()

@@ -49,7 +49,7 @@ def looking() -> BuiltScene:
     made = build(it)
     made.advance(2)
     assert made.fluid
-    populations, row, largest = made.fluid.populations, np.zeros(made.fluid.nx), np.zeros(made.fluid.ny)
+    populations, row, largest = made.fluid.padded, np.zeros(made.fluid.nx), np.zeros(made.fluid.ny)
 
     def look(steps: int) -> None:
         """Search the largest population of every row ``steps`` times."""

@@ -11,6 +11,7 @@ from porescale.common.compiled.cache import cache_root
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.machine import memory_bytes
+from porescale.lbm.lattice import row_length
 
 CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
 """Rates that a run is first reckoned with (two cores, float64); how this machine differs is learnt from its runs."""
@@ -32,7 +33,7 @@ def memory(derived: Derived) -> float:
     total = 400.0 * derived.grain_count
     if derived.cells:
         nx, ny = derived.cells
-        total += 9 * derived.precision * (nx + 2) * (ny + 2)
+        total += 9 * derived.precision * row_length(nx) * (ny + 2)
         if derived.grain_count:
             total += 3 * derived.precision * nx * ny
     if derived.diameters and derived.scales:

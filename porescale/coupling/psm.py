@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import most_threads
+from porescale.common.core.aligned import aligned_zeros
 from porescale.common.core.types import Reals
 from porescale.coupling.coverage.bodies import Bodies
 from porescale.coupling.coverage.discs import CHUNKS, SCRATCH, cover
@@ -53,8 +54,8 @@ though the grains lie at the bottom."""
 def row_work(nx: int, row_load: NDArray[np.float64], dtype: np.dtype[Any], *, soft: bool) -> RowWork:
     """Scratch of all threads for rows of nx cells, and the given loads of rows."""
     threads = most_threads()
-    scratch = np.zeros((threads, 4 if soft else 3, BLOCK + nx + BLOCK), dtype)
-    weights = np.zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
+    scratch = aligned_zeros((threads, 4 if soft else 3, BLOCK + nx + BLOCK), dtype)
+    weights = aligned_zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
     return RowWork(np.arange(BLOCK).astype(dtype), row_load, scratch, weights)
 
 
@@ -109,7 +110,7 @@ class SaturatedCells:
         self._patches = make_patches(wide, high, dtype)
         self._rows = make_rows(self._patches, fluid.ny)
         widest = int(self._patches.stride[:discs].max(initial=BLOCK))
-        self._lines = np.zeros((CHUNKS, SCRATCH, widest + BLOCK))
+        self._lines = aligned_zeros((CHUNKS, SCRATCH, widest + BLOCK), np.float64)
         row_load = np.zeros((count, int(high.max(initial=0)), 7 if soft_rim else 5))
         self._work = row_work(fluid.nx, row_load, dtype, soft=soft_rim)
         bands = -(-fluid.ny // BAND_HEIGHT)
@@ -341,19 +342,19 @@ class SaturatedCells:
         is the mean of what crosses its faces: in a steady flow the same through every section of the box.  The state
         is as before, to the bit.  Allocates three fields and a few rows.
         """
-        motion, law, f = self._place(centre, velocity, spin), fluid.law_of_sweep, fluid.populations
-        parity, ny = fluid.step % 2, fluid.ny
+        motion, law, f = self._place(centre, velocity, spin), fluid.law_of_sweep, fluid.padded
+        parity, ny, nx = fluid.step % 2, fluid.ny, fluid.nx
         with fluid.readable():
-            rho, jx, jy = moment_fields(f, parity)
+            rho, jx, jy = moment_fields(f, nx, parity)
             for first in range(0, ny, BANDS_READ * BAND_HEIGHT):
                 last = min(first + BANDS_READ * BAND_HEIGHT, ny)
                 bands = np.arange(first // BAND_HEIGHT, -(-last // BAND_HEIGHT))
                 here = f[:, first : last + 2]
                 kept = here.copy()
                 try:
-                    sweep(f, parity, bands, BAND_HEIGHT, self._rows, self._patches, motion, self.periodic_x, self._work,
-                          *self._laws, law)  # fmt: skip
-                    _, kx, ky = moment_fields(np.ascontiguousarray(here), parity)  # slots of opposite populations
+                    sweep(f, parity, bands, BAND_HEIGHT, self._rows, self._patches, motion, self.periodic_x,
+                          self._work, *self._laws, law)  # fmt: skip
+                    _, kx, ky = moment_fields(np.ascontiguousarray(here), nx, parity)  # slots of opposite populations
                 finally:
                     here[...] = kept
                 for j, k in ((jx, kx), (jy, ky)):

@@ -194,18 +194,20 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, ramp, row_load, 
 
 @parallel_kernel
 def sweep(f, parity, band_order, height, rows, patches, motion, periodic_x, work, weighting, solid, law):
-    """Step of ``parity`` with bodies; overwrites populations f and work.row_load.  Before an odd one: fill the halo.
+    """Step of ``parity`` with bodies; overwrites padded populations f and work.row_load.  Before an odd one: fill
+    the halo.
 
     Bands of ``height`` rows are spread over the threads in ``band_order``;  motion: ``Motion`` of all bodies;
     work: ``RowWork`` of all threads;  weighting, solid, law: of weight, solid and fluid operator.
     """
     # By name: what a loop over threads writes into a member of a tuple is lost.
     ramp, row_load, scratch, weights = work.ramp, work.row_load, work.scratch, work.weights
+    n = scratch.shape[2] - 2 * BLOCK
     for turn in prange(band_order.shape[0]):
         band = band_order[turn]
         mine = thread()
         for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
-            planes = slots(f, y + 1, parity)
+            planes = slots(f, n, y + 1, parity)
             saturated_row(
                 y, planes, rows, patches, motion, periodic_x, ramp, row_load, scratch[mine], weights[mine],
                 (weighting, solid, row_law(y, law)),

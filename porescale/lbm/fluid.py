@@ -25,6 +25,7 @@ from porescale.lbm.collision.choose import choose, without_force
 from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.collision.field import field_version
 from porescale.lbm.equilibrium import equilibrium
+from porescale.lbm.lattice import padded_populations
 from porescale.lbm.moments import moment_fields
 from porescale.lbm.stream import sweep
 
@@ -38,7 +39,8 @@ class Fluid:
     """A box of nx by ny cells of fluid in lattice units, at rest with density 1 until ``set_flow``.
 
     force_field (2, ny, nx): force density of every cell, None where it is uniform;
-    populations (9, ny + 2, nx + 2): slots, see lattice.py;  step: steps done;  plates: of no thickness, see
+    populations (9, ny + 2, nx + 2): slots, see lattice.py, a part of ``padded``, the same with rows as long as they are
+    in memory, and of ``flat``, in one dimension;  step: steps done;  plates: of no thickness, see
     boundary/thin_plate.py.  A step allocates nothing.
     """
 
@@ -63,8 +65,9 @@ class Fluid:
         self.force = force
         self.force_field: NDArray[np.floating] | None = None
         self._law_of_cells: Any = None
-        self.populations: NDArray[np.floating] = np.zeros((9, ny + 2, nx + 2), dtype)
-        self._flat = self.populations.reshape(-1)
+        self.padded = padded_populations(nx, ny, dtype)
+        self.populations: NDArray[np.floating] = self.padded[:, :, : nx + 2]
+        self.flat = self.padded.reshape(-1)
         self.links = BoundaryLinks(nx, ny, self.sides, dtype)
         self.plates: list[Plate] = []
         self.step = 0
@@ -88,17 +91,17 @@ class Fluid:
     def advance(self, cells: Sweep = sweep, *extra: Any) -> None:
         """One step: collide and stream all cells, then settle what crosses plates and sides.
 
-        cells: the sweep, called with populations, the step's parity, ``extra`` and the law of collision; that of
-        partially saturated cells is psm_kernels.py of the coupling.
+        cells: the sweep, called with ``padded``, the step's parity, ``extra`` (nx where there is none) and the law of
+        collision; that of partially saturated cells is psm_kernels.py of the coupling.
         """
         odd = self.step % 2
         if odd:
             self._bounce_off_plates(+1.0)
-        cells(self.populations, odd, *extra, self.law_of_sweep)
+        cells(self.padded, odd, *(extra or (self.nx,)), self.law_of_sweep)
         if odd:
             self._bounce_off_plates(-1.0)
         field = self.force_field
-        self.links.close(self._flat, odd, (self.law.fx, self.law.fy) if field is None else (field[0], field[1]))
+        self.links.close(self.flat, odd, (self.law.fx, self.law.fy) if field is None else (field[0], field[1]))
         self.step += 1
 
     @property
@@ -109,7 +112,7 @@ class Fluid:
     def _bounce_off_plates(self, sign: float) -> None:
         """Exchange the slots of all links that plates cut, before an odd sweep (+1) and after it (-1)."""
         for p in self.plates:
-            exchange(self._flat, p.first, p.second, p.pull, p.links_from(), p.signed_speed(sign))
+            exchange(self.flat, p.first, p.second, p.pull, p.links_from(), p.signed_speed(sign))
 
     def set_force_field(self, force: NDArray[np.floating]) -> None:
         """Give every cell a force density of its own, (2, ny, nx) of the populations' type.
@@ -141,13 +144,13 @@ class Fluid:
         if self.step % 2 == 0:
             yield
             return
-        kept = [(p, self._flat[p.first].copy(), self._flat[p.second].copy()) for p in self.plates]
+        kept = [(p, self.flat[p.first].copy(), self.flat[p.second].copy()) for p in self.plates]
         self._bounce_off_plates(+1.0)
         try:
             yield
         finally:
             for plate, first, second in kept:
-                self._flat[plate.first], self._flat[plate.second] = first, second
+                self.flat[plate.first], self.flat[plate.second] = first, second
 
     def fields(self, solid: NDArray[np.floating] | None = None) -> tuple[NDArray[np.floating], ...]:
         """Density and velocity (rho, ux, uy), each (ny, nx), lattice units.
@@ -155,7 +158,7 @@ class Fluid:
         ``solid`` (ny, nx): the weight B of partially saturated cells, in which only (1 - B) of the body force acts.
         """
         with self.readable():
-            rho, jx, jy = moment_fields(self.populations, self.step % 2)
+            rho, jx, jy = moment_fields(self.padded, self.nx, self.step % 2)
         forces: Any = self.force if self.force_field is None else self.force_field
         for j, force in ((jx, forces[0]), (jy, forces[1])):
             if np.any(force):
@@ -166,12 +169,12 @@ class Fluid:
     def mass_excess(self) -> float:
         """Sum over cells of density - 1, lattice units: a small number, so that a leak of 1e-12 shows."""
         with self.readable():
-            return float(np.sum(moment_fields(self.populations, self.step % 2, shifted=True)[0]))
+            return float(np.sum(moment_fields(self.padded, self.nx, self.step % 2, shifted=True)[0]))
 
     def momentum(self) -> tuple[float, float]:
         """Sum over cells of the first moments, lattice units."""
         with self.readable():
-            _, jx, jy = moment_fields(self.populations, self.step % 2)
+            _, jx, jy = moment_fields(self.padded, self.nx, self.step % 2)
         return float(np.sum(jx)), float(np.sum(jy))
 
     def state(self) -> dict[str, Any]:

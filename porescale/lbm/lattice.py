@@ -5,7 +5,8 @@ the odd half of a pair.  Populations are stored shifted, h_i = f_i - w_i, so tha
 round-off is that of the disturbance (Skordos 1993).  Speed of sound squared: 1/3.
 
 Storage is one array ``populations`` (9, ny + 2, nx + 2) with a rim of halo cells, streamed in place by the AA pattern
-(Bailey, Myre, Walsh, Lilja & Saar 2009).  Two kinds of step alternate:
+(Bailey, Myre, Walsh, Lilja & Saar 2009).  In memory its rows are padded so that the first cell of each begins a line of
+the cache (``padded_populations``): vectors that straddle two lines cost twice.  Two kinds of step alternate:
 
     even   reads h_i at slot [i, x], writes the collided h_i to slot [opposite(i), x]
     odd    reads h_i at slot [opposite(i), x - c_i], writes it to slot [i, x + c_i]
@@ -15,11 +16,30 @@ so each cell always reads and writes the same nine slots, and no order of cells 
 """
 
 import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from porescale.common.core.aligned import aligned_zeros
 
 CX = np.array([0, 1, -1, 0, 0, 1, -1, -1, 1])
 CY = np.array([0, 0, 0, 1, -1, 1, -1, 1, -1])
 OPPOSITE = np.array([0, 2, 1, 4, 3, 6, 5, 8, 7])
 WEIGHTS = np.array([4 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 36, 1 / 36, 1 / 36, 1 / 36])
+
+ROW_MULTIPLE = 16
+"""Cells of a padded row are a multiple of this: a line of the cache in float32, two in float64."""
+
+
+def row_length(nx: int) -> int:
+    """Cells of a padded row of nx cells and two of halo."""
+    return -(-(nx + 2) // ROW_MULTIPLE) * ROW_MULTIPLE
+
+
+def padded_populations(nx: int, ny: int, dtype: DTypeLike) -> NDArray[np.floating]:
+    """Zeros (9, ny + 2, row_length(nx)), contiguous, whose column 1, the first that is no halo, begins cache lines.
+
+    The columns from nx + 2 on are never used.
+    """
+    return aligned_zeros((9, ny + 2, row_length(nx)), dtype, first=1)
 
 
 def relaxation_time(viscosity: float) -> float:

@@ -20,23 +20,25 @@ def _moment_row(planes, d, jx, jy):
 def _moments_even(f, d, jx, jy):
     """Density excess and first moments, each (ny, nx), of populations f before an even step."""
     for y in prange(d.shape[0]):
-        _moment_row(even_slots(f, y + 1), d[y], jx[y], jy[y])
+        _moment_row(even_slots(f, d.shape[1], y + 1), d[y], jx[y], jy[y])
 
 
 @parallel_kernel
 def _moments_odd(f, d, jx, jy):
     """The same before an odd step; the halo must have been filled."""
     for y in prange(d.shape[0]):
-        _moment_row(odd_slots(f, y + 1), d[y], jx[y], jy[y])
+        _moment_row(odd_slots(f, d.shape[1], y + 1), d[y], jx[y], jy[y])
 
 
 def moment_fields(
-    populations: NDArray[np.floating], parity: int, *, shifted: bool = False
+    padded: NDArray[np.floating], nx: int, parity: int, *, shifted: bool = False
 ) -> tuple[NDArray[np.floating], NDArray[np.floating], NDArray[np.floating]]:
-    """Density (its excess over 1 if ``shifted``) and first moments before a step of that parity, each (ny, nx)."""
-    shape = (populations.shape[1] - 2, populations.shape[2] - 2)
-    d, jx, jy = (np.empty(shape, populations.dtype) for _ in range(3))
-    (_moments_odd if parity else _moments_even)(populations, d, jx, jy)
+    """Density (its excess over 1 if ``shifted``) and first moments before a step of that parity, each (ny, nx).
+
+    padded: populations (9, ny + 2, nx + 2 or more), contiguous.
+    """
+    d, jx, jy = (np.empty((padded.shape[1] - 2, nx), padded.dtype) for _ in range(3))
+    (_moments_odd if parity else _moments_even)(padded, d, jx, jy)
     if not shifted:
         d += 1
     return d, jx, jy

@@ -5,9 +5,8 @@ from porescale.lbm.collision.law import collide_row, row_law
 
 
 @inline
-def even_slots(f, y):
-    """Nine views (nx,) of row ``y`` (1 to ny) of populations (9, ny + 2, nx + 2) for an even step."""
-    n = f.shape[2] - 2
+def even_slots(f, n, y):
+    """Nine views (n,) of row ``y`` (1 to ny) of padded populations f of n cells a row, for an even step."""
     return (
         f[0, y, 1 : n + 1],
         f[1, y, 1 : n + 1],
@@ -22,9 +21,8 @@ def even_slots(f, y):
 
 
 @inline
-def odd_slots(f, y):
-    """Nine views (nx,) of row ``y`` for an odd step: h_i is read at slot [opposite(i), x - c_i]."""
-    n = f.shape[2] - 2
+def odd_slots(f, n, y):
+    """Nine views (n,) of row ``y`` for an odd step: h_i is read at slot [opposite(i), x - c_i]."""
     return (
         f[0, y, 1 : n + 1],
         f[2, y, 0:n],
@@ -39,18 +37,17 @@ def odd_slots(f, y):
 
 
 @inline
-def slots(f, y, parity):
+def slots(f, n, y, parity):
     """Nine views of row ``y`` for a step of ``parity``, 0 or 1."""
-    return odd_slots(f, y) if parity else even_slots(f, y)
+    return odd_slots(f, n, y) if parity else even_slots(f, n, y)
 
 
 @parallel_kernel
-def sweep(f, parity, law):
-    """Step of ``parity`` of plain fluid on every cell; overwrites populations f (9, ny + 2, nx + 2).
+def sweep(f, parity, n, law):
+    """Step of ``parity`` of plain fluid on every cell; overwrites padded populations f (9, ny + 2, n + 2 or more).
 
-    law: of the operator.  Before an odd step the halo must have been filled, and is overwritten too.  One kernel for
-    both kinds of step: compiled in half the time.
+    n: cells of a row;  law: of the operator.  Before an odd step the halo must have been filled, and is overwritten
+    too.  One kernel for both kinds of step: compiled in half the time.
     """
-    n = f.shape[2] - 2
     for y in prange(1, f.shape[1] - 1):
-        collide_row(slots(f, y, parity), 0, n, row_law(y - 1, law))
+        collide_row(slots(f, n, y, parity), 0, n, row_law(y - 1, law))

@@ -91,7 +91,7 @@ class Bodies:
         velocity of the fluid inside changes, given back.  Overwrites the shapes' rows of direct (n, 2)."""
         side_loads(
             self.discs, self._grid, patches, self.centre, self.velocity, self.spin, self._links, fluid.links.added,
-            fluid.populations.reshape(-1), self._borne,
+            fluid.flat, self._borne,
         )  # fmt: skip
         shape_loads(load[self.discs :], self._borne, self._inside, self.velocity[self.discs :],
                     self.spin[self.discs :], self._before, self.load)  # fmt: skip

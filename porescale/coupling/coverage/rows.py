@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch, unchecked_view
+from porescale.common.core.aligned import aligned_zeros
 
 BLOCK = 16
 """Cells done at once: the widest vector of float32."""
@@ -71,7 +72,7 @@ def make_patches(width: NDArray[np.int64], height: NDArray[np.int64], dtype: np.
     stride = whole_blocks(width)
     size = stride * height
     start = np.cumsum(size) - size
-    return Patches(np.zeros((len(width), 2), np.int64), height, stride, start, np.zeros(int(np.sum(size)), dtype))
+    return Patches(np.zeros((len(width), 2), np.int64), height, stride, start, aligned_zeros(int(np.sum(size)), dtype))
 
 
 def make_rows(patches: Patches, ny: int) -> Rows:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from porescale.lbm.boundary.choose import boundary
 from porescale.lbm.boundary.law import Boundary, Link
-from porescale.lbm.lattice import CX, CY, OPPOSITE
+from porescale.lbm.lattice import CX, CY, OPPOSITE, row_length
 
 Kind = str
 """Name of a kind of side, see ``choose.boundaries``."""
@@ -129,8 +129,8 @@ class Bounds:
         return self.flat(int(OPPOSITE[link.out]), (link.x, link.y))
 
     def flat(self, slot: int, at: tuple[int, int]) -> int:
-        """Index of a slot of a cell into the flat populations."""
-        return (slot * (self.ny + 2) + at[1]) * (self.nx + 2) + at[0]
+        """Index of a slot of a cell into the flat padded populations."""
+        return (slot * (self.ny + 2) + at[1]) * row_length(self.nx) + at[0]
 
     def length(self, side: str) -> int:
         """Number of cells along a side."""

@@ -13,7 +13,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.lbm.boundary.sides import NAMES, Sides
-from porescale.lbm.lattice import CY, OPPOSITE, WEIGHTS, direction
+from porescale.lbm.lattice import CY, OPPOSITE, WEIGHTS, direction, row_length
 
 _CROSSING = (direction(1, 0), direction(1, 1), direction(1, -1))
 
@@ -40,18 +40,19 @@ class Plate:
             if kind.settles and column == beside:
                 raise ValueError(f"a plate stands two cells or more from a {kind.name} side: column {column} does not")
         first, second, pull, row = [], [], [], []
+        long = row_length(nx)
         for y in range(1, ny + 1):
             for out in _CROSSING:
                 to = y + int(CY[out])
                 if 1 <= to <= ny:
-                    first.append((int(OPPOSITE[out]) * (ny + 2) + y) * (nx + 2) + column)
-                    second.append((out * (ny + 2) + to) * (nx + 2) + column + 1)
+                    first.append((int(OPPOSITE[out]) * (ny + 2) + y) * long + column)
+                    second.append((out * (ny + 2) + to) * long + column + 1)
                     pull.append(6 * WEIGHTS[out] * CY[out])
                     row.append(min(y, to) - 1)
                 elif (bottom if to < 1 else top).mirrors:
                     mirror = direction(-1, int(CY[out]))
-                    first.append((mirror * (ny + 2) + to) * (nx + 2) + column)
-                    second.append((out * (ny + 2) + to) * (nx + 2) + column + 1)
+                    first.append((mirror * (ny + 2) + to) * long + column)
+                    second.append((out * (ny + 2) + to) * long + column + 1)
                     pull.append(0.0)
                     row.append(y - 1)
         order = np.argsort(row, kind="stable")
