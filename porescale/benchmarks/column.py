@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from porescale.benchmarks.lbm import bytes_of
+from porescale.benchmarks.lbm import bytes_of, memory_of
 from porescale.benchmarks.psm import plain
 from porescale.builders.build import build
 from porescale.builders.scene import Scene
@@ -63,5 +63,14 @@ def bench_column(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
     return [
         Work(lambda: simulation.advance(STEPS), updates, "cells/s", cells),
         Work(contacts, updates, "cells/s", cells, variant="contacts"),
-        Work(lambda: fluid(STEPS), updates, "cells/s", cells, bytes_of(dtype), PLAIN),
+        Work(
+            lambda: fluid(STEPS),
+            updates,
+            "cells/s",
+            cells,
+            bytes_of(dtype),
+            PLAIN,
+            yardstick=True,
+            memory=memory_of(cells, dtype),
+        ),
     ]

@@ -50,13 +50,18 @@ def ordered(discs: Discs) -> Discs:
     return make_discs(discs.position[order], discs.radius[order], DENSITY)
 
 
+def float64_only(dtype: Dtype) -> None:
+    """InputError for float32."""
+    if dtype != "float64":
+        raise InputError(Fault("--dtype", dtype, "overlaps are 1e-3 of positions and less", allowed="float64 for dem"))
+
+
 @BENCHMARKS.row("dem")
 def bench_dem(size: int | None, threads: int, dtype: Dtype) -> Work:
     """Contact steps of a settled pile; ``threads`` share it where it is large enough, see sweep.py.  Raises InputError
     for float32.
     """
-    if dtype != "float64":
-        raise InputError(Fault("--dtype", dtype, "overlaps are 1e-3 of positions and less", allowed="float64 for dem"))
+    float64_only(dtype)
     grains = settled_pile(SIZE if size is None else size)
     weights = weights_of(grains.discs, DENSITY)
     dt = grains.stable_step()

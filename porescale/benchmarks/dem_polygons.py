@@ -71,5 +71,5 @@ def bench_polygons(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
     sides, count = len(frames.segments.ends), discs.discs.count
     return [
         Work(stepping(frames), float(STEPS * sides), "sides/s", sides, variant="sides"),
-        Work(stepping(discs), float(STEPS * count), "discs/s", count, variant=PLAIN),
+        Work(stepping(discs), float(STEPS * count), "discs/s", count, variant=PLAIN, yardstick=True),
     ]

@@ -35,6 +35,11 @@ def bytes_of(dtype: Dtype) -> float:
     return 2.0 * len(CX) * np.dtype(dtype).itemsize
 
 
+def memory_of(side: int, dtype: Dtype) -> int:
+    """Bytes of the populations of a box."""
+    return round(bytes_of(dtype) / 2) * side**2
+
+
 @BENCHMARKS.row("lbm")
 def bench_lbm(size: int | None, threads: int, dtype: Dtype) -> Work:
     """A box of ``size`` by ``size`` cells of moving fluid between walls, TRT."""
@@ -48,7 +53,7 @@ def bench_lbm(size: int | None, threads: int, dtype: Dtype) -> Work:
         for _ in range(steps):
             fluid.advance()
 
-    return Work(run, float(steps * side**2), "cells/s", side, bytes_of(dtype))
+    return Work(run, float(steps * side**2), "cells/s", side, bytes_of(dtype), memory=memory_of(side, dtype))
 
 
 @BENCHMARKS.row("operators")
@@ -70,6 +75,8 @@ def bench_operators(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
                 fluid.advance()
 
         variant = f"{operator}_eddies" if smagorinsky else operator
-        return Work(run, float(steps * side**2), "cells/s", side, bytes_of(dtype), variant)
+        return Work(
+            run, float(steps * side**2), "cells/s", side, bytes_of(dtype), variant, memory=memory_of(side, dtype)
+        )
 
     return [work(operator, constant) for operator in OPERATORS for constant in (0.0, CONSTANT)]

@@ -20,11 +20,16 @@ def bench_piv(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
 
     Without ``size`` pairs of 512 and of 1024 px.  InputError for sizes out of range.
     """
-    if size is not None and not SMALLEST <= size <= LARGEST:
+    if size is not None:
+        return [_work(checked(size), "")]
+    return [_work(side, "" if side == SIZE else "large") for side in (SIZE, 1024)]
+
+
+def checked(size: int) -> int:
+    """A size of pictures; InputError if it is out of range."""
+    if not SMALLEST <= size <= LARGEST:
         raise InputError(Fault("--size", size, "is out of range", "px", f"{SMALLEST} to {LARGEST}"))
-    return [
-        _work(side, "" if size is not None or side == SIZE else "large") for side in ((size,) if size else (SIZE, 1024))
-    ]
+    return size
 
 
 def _work(side: int, variant: str) -> Work:

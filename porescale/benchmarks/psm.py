@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from porescale.benchmarks.lbm import RELAXATION_TIME, bytes_of, side_of, steps_of
+from porescale.benchmarks.lbm import RELAXATION_TIME, bytes_of, memory_of, side_of, steps_of
 from porescale.common.evidence.benchmarks import PLAIN, Benchmarks, Dtype, Work
 from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.fluid import Fluid
@@ -66,8 +66,8 @@ def bench_psm(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
     side = side_of(size)
     steps = steps_of(side**2)
     wet, dry = stirred(side, dtype), plain(side, dtype)
-    updates, moved = float(steps * side**2), bytes_of(dtype)
+    updates, moved, memory = float(steps * side**2), bytes_of(dtype), memory_of(side, dtype)
     return [
-        Work(lambda: wet(steps), updates, "cells/s", side, moved),
-        Work(lambda: dry(steps), updates, "cells/s", side, moved, PLAIN),
+        Work(lambda: wet(steps), updates, "cells/s", side, moved, memory=memory),
+        Work(lambda: dry(steps), updates, "cells/s", side, moved, PLAIN, yardstick=True, memory=memory),
     ]

@@ -49,6 +49,7 @@ PACKAGE = Package.of(
     template=template,
     validations=discovered("porescale.validation", "VALIDATIONS"),
     benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
+    peers=discovered(BENCHMARKS, "PEERS"),
     case=Path(__file__).resolve().parents[2] / "cases" / "column_collapse",
     stability=discovered(BENCHMARKS, "STABILITY"),
     convergence=discovered("porescale.validation", "LADDERS"),

@@ -79,7 +79,7 @@ def test_fluid_that_nothing_drives_computes_no_force_and_has_the_same_bits(dtype
     for one in (law, without_force(law)):
         f = np.zeros((9, 8, 39), dtype)
         f[:, 1:-1, 1:-1] = start
-        sweep(f, 0, one)
+        sweep(f, 0, 37, one)
         found.append(f + dtype(0.0))  # -0 is 0
     assert found[0].tobytes() == found[1].tobytes()
     sweep(f, 0, driven._replace(fy=dtype(1e-3)))  # the twin: a force is seen

@@ -1,14 +1,20 @@
 """`bench [NAME…]`: rates in updates per second."""
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Callable
 from dataclasses import asdict
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from porescale.common.cli.options import Json, List, Threads, print_json, say
 from porescale.common.cli.package import Package
+from porescale.common.core.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from porescale.common.evidence.benchmarks import Benchmarks
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -19,14 +25,18 @@ def command(package: Package) -> Callable[..., int]:
         size: Annotated[int | None, Parameter(help="cells along a side, discs, …; each one's own if not given")] = None,
         threads: Threads = None,
         dtype: Annotated[Literal["float32", "float64"], Parameter(help="type of the fields")] = "float64",
+        against: Annotated[str | None, Parameter(help="program of others that does the same work in turns")] = None,
         list_: List = False,
         json: Json = False,
     ) -> int:
         """Measure rates, in updates per second, and their share of the memory bandwidth measured beside them."""
         from porescale.common.studies.budget_check import benchmark
 
-        register = package.benchmarks()
-        register.include(benchmark(package, package.case) if package.case else ())
+        if against is None:
+            register = package.benchmarks()
+            register.include(benchmark(package, package.case) if package.case else ())
+        else:
+            register, names = peer(package, against, names), (against,)
         if list_:
             print("\n".join(row.name for row in register))
             return 0
@@ -47,3 +57,13 @@ def command(package: Package) -> Callable[..., int]:
         return 0
 
     return bench
+
+
+def peer(package: Package, against: str, names: tuple[str, ...]) -> Benchmarks:
+    """The benchmarks beside programs of others.  InputError without any of that name, or where others are named too."""
+    if package.peers is None:
+        raise InputError(Fault("--against", against, f"{package.name} is held against no other program"))
+    if names:
+        repair = "leave the names out: each program stands for one kind of work"
+        raise InputError(Fault("--against", against, "was given with benchmarks", repair=repair))
+    return package.peers()

@@ -29,7 +29,8 @@ class Package(Program):
 
     summary : one line for --help;  template : gives the commented scene.toml that `new` writes;
     also : the same as show for runs of other commands, by the names in their cards;
-    validations, benchmarks : give the registers;  case : folder of a case whose front `bench` measures again, or None;
+    validations, benchmarks : give the registers;  peers : benchmarks beside programs of others, or None;
+    case : folder of a case whose front `bench` measures again, or None;
     stability : flows of a stability map;  extremes : tries of `study extremes`;  convergence : ladders of `study
     convergence`;  endurance : flows of `study endurance`;  parts : scenes of `study parts`;  each None if there are
     none;
@@ -41,6 +42,7 @@ class Package(Program):
     template: Callable[[], str]
     validations: Callable[[], Validations]
     benchmarks: Callable[[], Benchmarks]
+    peers: Callable[[], Benchmarks] | None = None
     case: Path | None = None
     stability: Callable[[], Stability] | None = None
     extremes: Callable[[], Extremes] | None = None

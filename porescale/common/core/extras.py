@@ -6,7 +6,16 @@ from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
 
-EXTRAS = {"pandas": "notebook", "xarray": "notebook", "pyvista": "notebook", "anywidget": "widget"}
+EXTRAS = {
+    "pandas": "notebook",
+    "xarray": "notebook",
+    "pyvista": "notebook",
+    "anywidget": "widget",
+    "lbmpy": "peers",
+    "pystencils": "peers",
+    "lammps": "peers",
+    "openpiv": "piv",
+}
 """Libraries, and the extra of this package that brings them."""
 
 
@@ -15,8 +24,9 @@ def extra(library: str) -> Any:
     try:
         return importlib.import_module(library)
     except ModuleNotFoundError:
-        repair = f"pip install 'porescale[{EXTRAS[library]}]'"
-        raise InputError(Fault(library, None, "is not installed", repair=repair)) from None
+        whole = library.partition(".")[0]
+        repair = f"pip install 'porescale[{EXTRAS[whole]}]'"
+        raise InputError(Fault(whole, None, "is not installed", repair=repair)) from None
 
 
 def installed(library: str) -> bool:

@@ -26,8 +26,9 @@ class Work:
 
     call : does it once;  updates : cells, discs, particles or image pairs that a call updates;
     unit : "cells/s" and so on;  size : as in the row;  bytes : what one update must move between memory and
-    processor (0: not bound by memory);  variant : added to the row's name when a benchmark times several;  remark :
-    a further line of text, made once.
+    processor (0: not bound by memory);  variant : added to the row's name when a benchmark times several;
+    remark : a further line of text, made once;  yardstick : whether the others of its benchmark are held against it,
+    in turns; the last of them;  memory : bytes of what a call goes over.
     """
 
     call: Callable[[], object]
@@ -37,10 +38,12 @@ class Work:
     bytes: float = 0.0
     variant: str = ""
     remark: Callable[[], str] | None = None
+    yardstick: bool = False
+    memory: int = 2**28
 
 
 PLAIN = "plain"
-"""Variant of the work that the others of its benchmark are held against."""
+"""Variant of the fluid alone, which is the yardstick of what is done with bodies in it."""
 
 Prepare = Callable[[int | None, int, Dtype], Work | Sequence[Work]]
 
@@ -58,7 +61,8 @@ class Row:
     """A measured rate; the fields are the JSON keys.
 
     rate : updates per second, median;  seconds : of one call, median;  bytes : per update;
-    share_of_bandwidth : rate * bytes over the in-place bandwidth measured in turns with it; None if bytes is 0.
+    share_of_bandwidth : rate * bytes over the in-place bandwidth of as much memory, the best that was seen in turns
+    with it, by its own rounds too: at most 1; None if bytes is 0.
     """
 
     name: str
@@ -75,7 +79,7 @@ class Row:
 class Benchmarks(Register[Benchmark]):
     """A register of benchmarks.
 
-    remarks : of the last ``run``: what part of the rate of its ``PLAIN`` work a benchmark has, measured in turns.
+    remarks : of the last ``run``: what part of the rate of its yardstick a benchmark has, measured in turns.
     """
 
     what = "benchmark"
@@ -131,32 +135,34 @@ class Benchmarks(Register[Benchmark]):
                 yield _measured(title, work, count, dtype, min_seconds)
                 if work.remark is not None:
                     self.remarks.append(f"{title}: {work.remark()}")
-            for title, work in zip(titles[:-1], works, strict=False) if works[-1].variant == PLAIN else ():
-                plain = works[-1]
-                share = interleaved(work.call, plain.call) * work.updates / plain.updates
-                self.remarks.append(f"{title}: {share:.2f} of the rate of {it.name}.{PLAIN}, in turns")
+            for title, work in zip(titles[:-1], works, strict=False) if works[-1].yardstick else ():
+                last = works[-1]
+                share = interleaved(work.call, last.call) * work.updates / last.updates
+                self.remarks.append(f"{title}: {share:.2f} of the rate of {titles[-1]}, in turns")
 
 
 def _measured(name: str, work: Work, threads: int, dtype: Dtype, min_seconds: float) -> Row:
     """Time one piece of work; if it is bound by memory, in turns with the copy that gives the bandwidth."""
-    shares: list[float] = []
+    rates: list[float] = []
+    copies: list[float] = []
     copy = None
     work.call()
     if work.bytes:
         from porescale.common.evidence.bandwidth import Copy
 
-        copy = Copy(threads, dtype)
+        copy = Copy(threads, dtype, work.memory)
         copy()
 
     def once() -> float:
-        """Seconds of a call; notes its share of the bandwidth."""
+        """Seconds of a call; notes the bandwidth that it needed, and that of the copies."""
         seconds = seconds_of(work.call)
         if copy is not None:
-            shares.append(work.updates * work.bytes / seconds * seconds_of(copy) / copy.bytes)
+            rates.append(work.updates * work.bytes / seconds)
+            copies.append(copy.bytes / copy.seconds())
         return seconds
 
     seconds = statistics.median(repeated(once, min_seconds))
-    share = statistics.median(shares) if shares else None
+    share = statistics.median(rates) / max(*rates, *copies) if rates else None
     return Row(name, work.size, threads, dtype, work.updates / seconds, work.unit, seconds, work.bytes, share)
 
 

@@ -15,7 +15,7 @@ from rich.console import Console
 from porescale.common.api.report import Report
 from porescale.common.core.errors import InputError
 from porescale.common.evidence import benchmarks, validations
-from porescale.common.evidence.bandwidth import Copy, flip
+from porescale.common.evidence.bandwidth import Copy, flip, flip_nine
 from porescale.common.evidence.benchmarks import Benchmark, Benchmarks, Work
 from porescale.common.evidence.register import choose, discovered
 from porescale.common.evidence.timing import interleaved, repeated, seconds_of
@@ -209,15 +209,34 @@ def test_the_copy_kernel_touches_every_number_in_place(dtype: str, compiled: boo
     np.testing.assert_array_equal(values, 1 - np.arange(12).reshape(3, 4))
 
 
+@pytest.mark.parametrize("compiled", [True, False])
+def test_the_copy_in_nine_streams_touches_every_number_in_place(compiled: bool) -> None:
+    values = np.arange(9 * 2 * 3, dtype=float).reshape(9, 2, 3)
+    (flip_nine if compiled else flip_nine.py_func)(values, 1.0)
+    np.testing.assert_array_equal(values, 1 - np.arange(9 * 2 * 3).reshape(9, 2, 3))
+
+
+def test_no_share_of_the_bandwidth_exceeds_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Work that copies nothing and claims a terabyte: faster than any copy, it is its own ceiling."""
+    made = Benchmarks([Benchmark("much", lambda *_: Work(lambda: None, 1.0, "cells/s", 3, 1e12, memory=2**16))])
+    (row,) = made.run(threads=1, min_seconds=0.0)
+    assert row.share_of_bandwidth is not None
+    assert 0 < row.share_of_bandwidth <= 1
+
+
 def test_bandwidth_counts_read_and_write() -> None:
     copy = Copy(1, "float32", 2**16)
-    assert copy.bytes == 2 * copy.values.nbytes == 2 * 2**16
+    assert copy.bytes == 2 * copy.values.nbytes
+    assert 2**16 - 9 * 64 * 16 * 4 < copy.values.nbytes <= 2**16  # parts of whole lines
     copy()
-    assert (copy.values == 0.75).all()
+    assert (copy.values == 0.25).all()  # once in each form
 
 
 def test_a_benchmark_is_held_against_its_plain_work_in_turns(monkeypatch: pytest.MonkeyPatch) -> None:
-    works = [Work(lambda: None, 30.0, "cells/s", 3), Work(lambda: None, 20.0, "cells/s", 3, variant="plain")]
+    works = [
+        Work(lambda: None, 30.0, "cells/s", 3),
+        Work(lambda: None, 20.0, "cells/s", 3, variant="plain", yardstick=True),
+    ]
     made = Benchmarks([Benchmark("wet", lambda *_: works)])
     # A call of the plain work takes a quarter of the other's time, for two thirds of its updates.
     monkeypatch.setattr(benchmarks, "interleaved", lambda a, b: 0.25)
@@ -241,7 +260,7 @@ def test_benchmark_rows_have_exactly_the_promised_keys() -> None:
     assert plain.share_of_bandwidth is None
     assert plain.rate == 10.0 / plain.seconds
     assert streams.name == "streams.all"
-    assert streams.share_of_bandwidth > 0
+    assert 0 < streams.share_of_bandwidth <= 1
     assert "streams.all" in printed(benchmarks.table(rows))
     assert made.remarks == []
     with pytest.raises(InputError, match="--size = 0"):
