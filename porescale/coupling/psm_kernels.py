@@ -25,6 +25,7 @@ from porescale.lbm.collision.law import (
     Macroscopic,
     cell_law,
     collide_row,
+    cut,
     half_force,
     moments,
     numbers,
@@ -77,23 +78,6 @@ def weights_row(s, sx, sy, weights, weighting, solid):
 
 
 @inline
-def cut_parts(planes, first, n):
-    """Entries ``first`` to ``first + n - 1`` of nine rows."""
-    a0, a1, a2, a3, a4, a5, a6, a7, a8 = planes
-    return (
-        unchecked_view(a0, first, n),
-        unchecked_view(a1, first, n),
-        unchecked_view(a2, first, n),
-        unchecked_view(a3, first, n),
-        unchecked_view(a4, first, n),
-        unchecked_view(a5, first, n),
-        unchecked_view(a6, first, n),
-        unchecked_view(a7, first, n),
-        unchecked_view(a8, first, n),
-    )
-
-
-@inline
 def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
     """Collide cells ``first`` to ``last`` - 1 of a row in which grains lie.
 
@@ -105,7 +89,7 @@ def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
     weighting, solid, law = laws
     # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
     n = last - first
-    a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut_parts(planes, first, n)
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut(planes, first, n)
     s, sx, sy, st = (
         unchecked_view(s, first, n),
         unchecked_view(sx, first, n),

@@ -1,6 +1,6 @@
 """Sweeps over the lattice: the slots of each row, passed to a row kernel.  See lattice.py for the in-place pattern."""
 
-from porescale.common.compiled.jit import inline, parallel_kernel, prange
+from porescale.common.compiled.jit import inline, parallel_kernel, prange, unchecked_view
 from porescale.lbm.collision.law import collide_row, row_law
 
 
@@ -8,15 +8,15 @@ from porescale.lbm.collision.law import collide_row, row_law
 def even_slots(f, n, y):
     """Nine views (n,) of row ``y`` (1 to ny) of padded populations f of n cells a row, for an even step."""
     return (
-        f[0, y, 1 : n + 1],
-        f[1, y, 1 : n + 1],
-        f[2, y, 1 : n + 1],
-        f[3, y, 1 : n + 1],
-        f[4, y, 1 : n + 1],
-        f[5, y, 1 : n + 1],
-        f[6, y, 1 : n + 1],
-        f[7, y, 1 : n + 1],
-        f[8, y, 1 : n + 1],
+        unchecked_view(f[0, y], 1, n),
+        unchecked_view(f[1, y], 1, n),
+        unchecked_view(f[2, y], 1, n),
+        unchecked_view(f[3, y], 1, n),
+        unchecked_view(f[4, y], 1, n),
+        unchecked_view(f[5, y], 1, n),
+        unchecked_view(f[6, y], 1, n),
+        unchecked_view(f[7, y], 1, n),
+        unchecked_view(f[8, y], 1, n),
     )
 
 
@@ -24,15 +24,15 @@ def even_slots(f, n, y):
 def odd_slots(f, n, y):
     """Nine views (n,) of row ``y`` for an odd step: h_i is read at slot [opposite(i), x - c_i]."""
     return (
-        f[0, y, 1 : n + 1],
-        f[2, y, 0:n],
-        f[1, y, 2 : n + 2],
-        f[4, y - 1, 1 : n + 1],
-        f[3, y + 1, 1 : n + 1],
-        f[6, y - 1, 0:n],
-        f[5, y + 1, 2 : n + 2],
-        f[8, y - 1, 2 : n + 2],
-        f[7, y + 1, 0:n],
+        unchecked_view(f[0, y], 1, n),
+        unchecked_view(f[2, y], 0, n),
+        unchecked_view(f[1, y], 2, n),
+        unchecked_view(f[4, y - 1], 1, n),
+        unchecked_view(f[3, y + 1], 1, n),
+        unchecked_view(f[6, y - 1], 0, n),
+        unchecked_view(f[5, y + 1], 2, n),
+        unchecked_view(f[8, y - 1], 2, n),
+        unchecked_view(f[7, y + 1], 0, n),
     )
 
 

@@ -152,7 +152,7 @@ def test_one_kind_of_scene_learns_nothing_from_another_and_one_slow_run_has_no_s
 
 def test_single_precision_takes_half_of_the_populations(monkeypatch):
     double, single = (cost.memory(derive(column(fluid__precision=it))) for it in ("float64", "float32"))
-    assert double - single == 4 * (9 * 62 * 42 + 3 * 60 * 40)  # and of three numbers that a cell has of its solid
+    assert double - single == 4 * (9 * 64 * 42 + 3 * 60 * 40)  # padded rows; three of the solid in a cell
 
 
 def test_a_small_run_does_not_make_the_machine_look_slow(tmp_path, monkeypatch):

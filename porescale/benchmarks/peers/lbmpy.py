@@ -5,7 +5,6 @@ vectors as wide as the machine has, and OpenMP on several threads.  Ours closes 
 kernel leaves the sides as they are.
 """
 
-import platform
 from typing import Any
 
 import numpy as np
@@ -56,24 +55,14 @@ def made_by_lbmpy(odd: bool, dtype: Dtype, threads: int) -> Any:
     )  # fmt: skip
     field = ps.fields(f"src(9): {dtype}[2D]", layout="fzyx")
     rule = lbm.create_lb_update_rule(lbm_config=config, lbm_optimisation=lbm.LBMOptimisation(symbolic_field=field))
-    target = ps.Target.CPU if platform.machine() not in ("x86_64", "AMD64") else widest(ps)
-    chosen = ps.CreateKernelConfig(target=target, default_dtype=dtype, ghost_layers=1)
+    chosen = ps.CreateKernelConfig(target=ps.Target.CurrentCPU, default_dtype=dtype, ghost_layers=1)
     chosen.cpu.openmp.enable = threads > 1
     if threads > 1:
         chosen.cpu.openmp.num_threads = threads
-    if target != ps.Target.CPU:
-        chosen.cpu.vectorize.enable = chosen.cpu.vectorize.assume_inner_stride_one = True
+    chosen.cpu.vectorize.enable = chosen.cpu.vectorize.assume_inner_stride_one = True
     try:
         return ps.create_kernel(rule, chosen).compile()
     except Exception as raised:  # pystencils raises its own of many kinds, for a missing compiler too
         repair = "install a C++ compiler, such as g++"
         text = str(raised).strip().split("\n")[0]
         raise InputError(Fault("lbmpy", None, f"cannot compile its kernel ({text})", repair=repair)) from None
-
-
-def widest(ps: Any) -> Any:
-    """pystencils' name of the widest vectors of this machine."""
-    from llvmlite import binding
-
-    has = binding.get_host_cpu_features()
-    return ps.Target.X86_AVX512 if has.get("avx512f") else ps.Target.X86_AVX if has.get("avx2") else ps.Target.X86_SSE

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from porescale.common.compiled.jit import inline, law_function, precision_constants
+from porescale.common.compiled.jit import inline, law_function, precision_constants, unchecked_view
 
 
 class Macroscopic(NamedTuple):
@@ -197,20 +197,20 @@ def collide_then_add(f, m, rate, part, law):
 
 
 @inline
-def cut(planes, first, last):
-    """Entries ``first`` to ``last`` - 1 of nine rows: an index that might be negative keeps a loop from being
+def cut(planes, first, n):
+    """Entries ``first`` to ``first + n - 1`` of nine rows: an index that might be negative keeps a loop from being
     vectorised."""
     a0, a1, a2, a3, a4, a5, a6, a7, a8 = planes
     return (
-        a0[first:last],
-        a1[first:last],
-        a2[first:last],
-        a3[first:last],
-        a4[first:last],
-        a5[first:last],
-        a6[first:last],
-        a7[first:last],
-        a8[first:last],
+        unchecked_view(a0, first, n),
+        unchecked_view(a1, first, n),
+        unchecked_view(a2, first, n),
+        unchecked_view(a3, first, n),
+        unchecked_view(a4, first, n),
+        unchecked_view(a5, first, n),
+        unchecked_view(a6, first, n),
+        unchecked_view(a7, first, n),
+        unchecked_view(a8, first, n),
     )
 
 
@@ -223,7 +223,7 @@ def collide_row(planes, first, last, law):
     """
     c = numbers(law.rate)
     laws = part_law(first, last, law)
-    a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut(planes, first, last)
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut(planes, first, last - first)
     for x in range(a0.shape[0]):
         here = cell_law(x, laws)
         hx, hy = half_force(here)
