@@ -1,0 +1,54 @@
+"""One thread for a cell or a link: each passes the one entry that is its own to the function that the CPU compiles.
+
+The in-place pattern is kept on the device (lattice.py): half the memory of two arrays and no more traffic, and a cell
+reads and writes the same nine slots, so that no order of threads can matter.  Neighbouring threads take neighbouring
+cells of a row, whose populations lie side by side in each of the nine planes.
+
+Plain functions: ``device_kernel`` of common/compiled/cuda.py compiles them for a law and a precision.
+"""
+
+from porescale.common.compiled.cuda import grid
+from porescale.lbm.boundary.links import empty_halo, fill_halo
+from porescale.lbm.boundary.pressure import let_in
+from porescale.lbm.boundary.thin_plate import exchange
+from porescale.lbm.collision.law import collide_row
+from porescale.lbm.stream import slots
+
+
+def sweep_cells(f, parity, law):
+    """``sweep`` of stream.py: overwrites populations f (9, ny + 2, nx + 2);  threads: nx ny or more."""
+    k = grid()
+    n = f.shape[2] - 2
+    if k < n * (f.shape[1] - 2):
+        x = k % n
+        collide_row(slots(f, k // n + 1, parity), x, x + 1, law)
+
+
+def fill_links(flat, halo, inner, added):
+    """``fill_halo`` of boundary/links.py: overwrites flat populations at ``halo``;  threads: one a link or more."""
+    k = grid()
+    if k < halo.shape[0]:
+        fill_halo(flat, halo[k : k + 1], inner[k : k + 1], added[k : k + 1])
+
+
+def empty_links(flat, halo, inner, added):
+    """``empty_halo`` of boundary/links.py: overwrites flat populations at ``inner``;  threads: one a link or more."""
+    k = grid()
+    if k < halo.shape[0]:
+        empty_halo(flat, halo[k : k + 1], inner[k : k + 1], added[k : k + 1])
+
+
+def let_in_links(flat, slots_of, to, source, along, weight, excess, force):
+    """``let_in`` of boundary/pressure.py: overwrites flat populations at ``to``;  threads: one a link or more."""
+    k = grid()
+    if k < to.shape[0]:
+        a, b = k, k + 1
+        let_in(flat, slots_of[a:b], to[a:b], source[a:b], along[a:b], weight[a:b], excess[a:b], force[:, a:b])
+
+
+def exchange_links(flat, first, second, pull, begin, speed):
+    """``exchange`` of boundary/thin_plate.py: overwrites flat populations at the slots of links ``begin`` and up;
+    threads: one a link or more."""
+    k = grid()
+    if begin <= k < first.shape[0]:
+        exchange(flat, first[k : k + 1], second[k : k + 1], pull[k : k + 1], 0, speed)
