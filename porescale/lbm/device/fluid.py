@@ -1,120 +1,160 @@
-"""The populations of a `Fluid` on a graphics device, and steps of them there.
+"""A `Fluid` whose populations are stepped on a graphics device.
 
-The fluid of the CPU stays the owner of everything that is not a population: sides, plates, law, number of steps.  Its
-populations are stale while the device steps; ``fetch`` brings them, and with them fields, checkpoint and pictures are
-those of the CPU's code.  A state that was fetched goes on where one likes.
+Everything that is not a population stays as it is: sides, plates, law, number of steps.  What reads the populations
+(fields, moments, the state of a checkpoint) fetches them first and is the CPU's code, so a checkpoint holds nothing of
+a device and goes on where one likes.
 """
 
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from types import FunctionType
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from porescale.common.compiled.cuda import device_kernel, launch, require_device, to_device
 from porescale.lbm.boundary.pressure import OpenLinks
-from porescale.lbm.device import kernels
-from porescale.lbm.fluid import Fluid
+from porescale.lbm.boundary.thin_plate import Plate
+from porescale.lbm.device.kernels import empty_links, exchange_links, fill_links, let_in_links, sweep_cells
+from porescale.lbm.fluid import Fluid, Sweep
+from porescale.lbm.stream import sweep
 
-CELLS_IN_BLOCK = 256
-LINKS_IN_BLOCK = 64
+CELLS_IN_BLOCK, LINKS_IN_BLOCK = 256, 64
+"""Threads of a block: whole warps, as the devices' maker recommends; not tuned, since no device was at hand."""
 
-
-def lacking(fluid: Fluid) -> list[str]:
-    """What the fluid has and the device does not, a few words each."""
-    found = []
-    if fluid.force_field is not None:
-        found.append("a body force of every cell")
-    found += [f"sides of kind {name}" for name, own in fluid.links.own.items() if not isinstance(own, OpenLinks)]
-    return found
+kernel_of = cache(device_kernel)
 
 
-def bytes_needed(nx: int, ny: int, dtype: Any) -> int:
-    """Device memory of a box of nx by ny cells: populations with their halo, and 24 bytes for each link of a side."""
-    links = 6 * (nx + ny)
-    return int(9 * (nx + 2) * (ny + 2) * np.dtype(dtype).itemsize + links * (16 + np.dtype(dtype).itemsize))
+class OpenSide(NamedTuple):
+    """Arrays of `OpenLinks` on the device, in the order of let_in_links.  even, odd : slots, and where they go."""
+
+    even: tuple[Any, Any]
+    odd: tuple[Any, Any]
+    source: Any
+    along: Any
+    weight: Any
+    force: Any
 
 
-class DeviceFluid:
-    """A fluid whose populations are stepped on the device.  ValueError where the device lacks what the fluid has.
+class DeviceFluid(Fluid):
+    """A fluid on the device; arguments, attributes and results of `Fluid`.  InputError where there is no device.
 
-    fluid : its populations are stale until ``fetch``;  populations (9, ny + 2, nx + 2): on the device.
+    populations : the CPU's copy, brought up to date by whatever reads it here; ``fetch`` before reading it otherwise.
     """
 
-    def __init__(self, fluid: Fluid) -> None:
-        if missing := lacking(fluid):
-            raise ValueError(f"not on the device: {', '.join(missing)}")
+    def __init__(self, *arguments: Any, **options: Any) -> None:
         require_device()
-        self.fluid = fluid
-        self.law = fluid.law_of_sweep
-        real = fluid.populations.dtype.type
-        self._sweep, self._fill, self._empty, self._let_in, self._exchange = (
-            device_kernel(function, type(self.law), real)
-            for function in (
-                kernels.sweep_cells,
-                kernels.fill_links,
-                kernels.empty_links,
-                kernels.let_in_links,
-                kernels.exchange_links,
-            )
-        )
-        self._links = (to_device(fluid.links.halo), to_device(fluid.links.inner))
-        self._plates: dict[int, tuple[Any, Any, Any]] = {}
-        self._open = {id(own): _open_links(own, fluid.force) for own in fluid.links.own.values()}
-        self.send()
+        super().__init__(*arguments, **options)
+        self._there: Any = None
+        """Populations on the device, None where the CPU's are to be sent before the next step."""
+        self._fetched = True
+        self._links = (to_device(self.links.halo), to_device(self.links.inner))
+        self._plates: dict[Plate, tuple[Any, Any, Any]] = {}
+        self._open = {name: _open_side(own, self.force) for name, own in self.links.own.items()}
+        self._send_sides()
 
-    def send(self) -> None:
-        """Take the state of the CPU's fluid, its populations included: at first, and after a restore."""
-        self.populations = to_device(self.fluid.populations)
-        self._flat = self.populations.reshape(self.fluid.populations.size)
-        self.send_sides()
+    def _send_sides(self) -> None:
+        """Velocities and densities of the sides, as they are now."""
+        self._added = to_device(self.links.added)
+        self._excess = {name: to_device(_open_links(own).excess) for name, own in self.links.own.items()}
 
-    def send_sides(self) -> None:
-        """Take velocities and densities of the sides from the CPU's fluid, after a change of one."""
-        self._added = to_device(self.fluid.links.added)
-        for own in self.fluid.links.own.values():
-            self._open[id(own)]["excess"] = to_device(own.excess)  # type: ignore[attr-defined]
+    def fetch(self) -> None:
+        """Bring the CPU's populations up to date."""
+        if not self._fetched:
+            self._there.copy_to_host(self.populations)
+            self._fetched = True
 
-    def fetch(self) -> Fluid:
-        """Bring the populations to the CPU's fluid, and return it."""
-        self.populations.copy_to_host(self.fluid.populations)
-        return self.fluid
-
-    def advance(self) -> None:
-        """One step, as ``Fluid.advance`` without extra arguments."""
-        fluid = self.fluid
-        odd = fluid.step % 2
+    def advance(self, cells: Sweep = sweep, *extra: Any) -> None:
+        """One step of plain fluid, as ``Fluid.advance``; ValueError with another sweep."""
+        if cells is not sweep:
+            raise ValueError("a fluid on the device takes no other sweep than that of plain fluid")
+        if self._there is None:
+            self._there = to_device(self.populations)
+        self._fetched = False
+        odd, law, flat = self.step % 2, self.law_of_sweep, self._there.reshape(self.populations.size)
         if odd:
-            self._bounce_off_plates(+1.0)
-        launch(self._sweep, fluid.nx * fluid.ny, CELLS_IN_BLOCK, self.populations, odd, self.law)
+            self._exchange(flat, +1.0)
+        launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, odd, law)
         if odd:
-            self._bounce_off_plates(-1.0)
-        settle = self._empty if odd else self._fill
-        launch(settle, fluid.links.halo.size, LINKS_IN_BLOCK, self._flat, *self._links, self._added)
-        for links in self._open.values():
-            slots, to = links["odd" if odd else "even"]
-            values = (links["source"], links["along"], links["weight"], links["excess"], links["force"])
-            launch(self._let_in, links["count"], LINKS_IN_BLOCK, self._flat, slots, to, *values)
-        fluid.step += 1
+            self._exchange(flat, -1.0)
+        settle = self._kernel(empty_links if odd else fill_links)
+        launch(settle, self.links.halo.size, LINKS_IN_BLOCK, flat, *self._links, self._added)
+        for name, side in self._open.items():
+            slots, to = side.odd if odd else side.even
+            values = (side.source, side.along, side.weight, self._excess[name], side.force)
+            launch(self._kernel(let_in_links), side.source.size, LINKS_IN_BLOCK, flat, slots, to, *values)
+        self.step += 1
 
-    def _bounce_off_plates(self, sign: float) -> None:
-        """Exchange the slots of all links that plates cut, as ``Fluid`` does."""
-        for plate in self.fluid.plates:
-            if id(plate) not in self._plates:
-                self._plates[id(plate)] = (to_device(plate.first), to_device(plate.second), to_device(plate.pull))
-            first, second, pull = self._plates[id(plate)]
-            values = (first, second, pull, plate.links_from(), plate.signed_speed(sign))
-            launch(self._exchange, plate.first.size, LINKS_IN_BLOCK, self._flat, *values)
+    def _exchange(self, flat: Any, sign: float) -> None:
+        """Exchange the slots of all links that plates cut, before an odd sweep (+1) and after it (-1)."""
+        for plate in self.plates:
+            if plate not in self._plates:
+                self._plates[plate] = (to_device(plate.first), to_device(plate.second), to_device(plate.pull))
+            values = (*self._plates[plate], plate.links_from(), plate.signed_speed(sign))
+            launch(self._kernel(exchange_links), plate.first.size, LINKS_IN_BLOCK, flat, *values)
+
+    def _kernel(self, function: FunctionType) -> Any:
+        """A kernel for the law and precision of this fluid."""
+        return kernel_of(function, type(self.law_of_sweep), self.populations.dtype.type)
+
+    @contextmanager
+    def readable(self) -> Iterator[None]:
+        """As ``Fluid.readable``, with the CPU's populations up to date."""
+        self.fetch()
+        with super().readable():
+            yield
+
+    def set_flow(self, ux: Any, uy: Any, density: Any = 1.0) -> None:
+        """As ``Fluid.set_flow``."""
+        super().set_flow(ux, uy, density)
+        self._there, self._fetched = None, True
+
+    def set_force_field(self, force: NDArray[np.floating]) -> None:
+        """ValueError: the device has no force of every cell."""
+        raise ValueError("a fluid on the device has no body force of every cell")
+
+    def set_side_velocity(self, side: str, velocity: Any) -> None:
+        """As ``Fluid.set_side_velocity``."""
+        super().set_side_velocity(side, velocity)
+        self._send_sides()
+
+    def set_side_density(self, side: str, density: float) -> None:
+        """As ``Fluid.set_side_density``."""
+        super().set_side_density(side, density)
+        self._send_sides()
+
+    def state(self) -> dict[str, Any]:
+        """As ``Fluid.state``: a state of the CPU."""
+        self.fetch()
+        return super().state()
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Restore a state, wherever it comes from."""
+        super().restore(state)
+        self._there, self._fetched = None, True
+        self._send_sides()
 
 
-def _open_links(own: Any, force: tuple[float, float]) -> dict[str, Any]:
+def bytes_needed(nx: int, ny: int, real_bytes: int) -> int:
+    """Device memory of a box of nx by ny cells: populations with their halo, two slots and a number a link."""
+    return 9 * (nx + 2) * (ny + 2) * real_bytes + 6 * (nx + ny) * (16 + real_bytes)
+
+
+def _open_links(own: Any) -> OpenLinks:
+    """The links of a kind of side that settles them itself; ValueError unless it is the pressure side."""
+    if not isinstance(own, OpenLinks):
+        raise ValueError(f"a fluid on the device has no sides of kind {type(own).__name__}")
+    return own
+
+
+def _open_side(own: Any, force: tuple[float, float]) -> OpenSide:
     """The arrays of pressure sides on the device, with the uniform body force at each link."""
-    every = np.empty_like(own.force)
+    links = _open_links(own)
+    every = np.empty_like(links.force)
     every[0], every[1] = force
-    return {
-        "count": own.source.size,
-        "even": (to_device(own.even), to_device(own.halo)),
-        "odd": (to_device(own.odd), to_device(own.inner)),
-        "source": to_device(own.source),
-        "along": to_device(own.along),
-        "weight": to_device(own.weight),
-        "force": to_device(every),
-    }
+    return OpenSide(
+        (to_device(links.even), to_device(links.halo)), (to_device(links.odd), to_device(links.inner)),
+        to_device(links.source), to_device(links.along), to_device(links.weight), to_device(every),
+    )  # fmt: skip
