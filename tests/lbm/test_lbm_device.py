@@ -125,6 +125,20 @@ def test_what_the_device_lacks_is_refused():
         fluid.advance(lambda *_: None)
 
 
+@pytest.mark.parametrize("box", BOXES)
+def test_no_link_reads_what_another_overwrites(box):
+    """So that no order of threads can matter: slots of links, in each kind of step, and of plates."""
+    links = Fluid(7, 6, 0.7, sides=BOXES[box]).links
+    assert not set(links.halo) & set(links.inner)
+    assert len(set(links.halo)) == len(set(links.inner)) == links.halo.size
+    for own in links.own.values():
+        assert not set(own.halo) & {*own.even.ravel(), *links.halo}
+        assert not set(own.inner) & {*own.odd.ravel(), *links.inner}
+        assert len(set(own.halo)) == len(set(own.inner)) == own.source.size > 0
+    plate = Fluid(7, 6, 0.7, sides=Sides(left="wall", right="wall", bottom="slip", top="wall")).add_plate(3)
+    assert len({*plate.first, *plate.second}) == 2 * plate.first.size
+
+
 def test_memory_is_that_of_the_populations():
     """Nine numbers a cell; what the halo and links of a box of 12 000 cells a side add is below 0.1 %."""
     assert bytes_needed(12000, 12000, 4) == pytest.approx(9 * 4 * 12000**2, rel=1e-3)

@@ -8,10 +8,11 @@ numba's CUDA target is imported by the first call here, never by a run on the CP
 after ``simulate``, it is numba's simulator: every thread of every block in plain Python, on any machine.
 """
 
+import math
 from collections.abc import Callable
 from functools import cache
 from importlib import import_module
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,18 @@ def require_device() -> None:
         raise InputError(Fault("device", "gpu", f"compute capability {capability}", allowed=f">= {LEAST_CAPABILITY}"))
 
 
+def describe() -> tuple[str, int]:
+    """Name of the device, or why there is none, and its memory in bytes, 0 where it is not known."""
+    try:
+        require_device()
+    except InputError as error:
+        return str(error), 0
+    if simulated():
+        return "numba's simulator", 0
+    name: Any = cuda().get_current_device().name
+    return name.decode() if isinstance(name, bytes) else str(name), int(cuda().current_context().get_memory_info()[1])
+
+
 def to_device(array: Any) -> Any:
     """A copy of the array on the device; InputError where its memory does not suffice."""
     try:
@@ -96,7 +109,7 @@ def grid() -> int:
 def _for_device(function: FunctionType, law: type, real: type) -> FunctionType:
     """A copy of the function in whose names everything compiled for the CPU is compiled for the device."""
     names = dict(function.__globals__)
-    for name in _names(function.__code__):
+    for name in function.__code__.co_names:
         if name in names:
             names[name] = _meaning(names[name], law, real)
     made = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
@@ -104,13 +117,10 @@ def _for_device(function: FunctionType, law: type, real: type) -> FunctionType:
     return made
 
 
-def _names(code: Any) -> tuple[str, ...]:
-    """Names of a function that may be global."""
-    return tuple(code.co_names)
-
-
 def _meaning(value: Any, law: type, real: type) -> Any:
     """What the value of a global name becomes on the device."""
+    if value is np and not simulated():
+        return _numpy()
     if value is grid:
         return _numbered()
     if isinstance(value, Kernel):
@@ -131,6 +141,14 @@ def _meaning(value: Any, law: type, real: type) -> Any:
 def _constant(known: Any) -> Callable[[Any], Any]:
     """A function of one number that returns ``known``."""
     return lambda number: known
+
+
+@cache
+def _numpy() -> ModuleType:
+    """What device functions use of numpy, in the precision of the argument: numba-cuda does not know numpy's own."""
+    made: Any = ModuleType("numpy_on_device")
+    made.sqrt = math.sqrt
+    return made  # type: ignore[no-any-return]
 
 
 @cache

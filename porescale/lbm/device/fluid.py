@@ -8,7 +8,6 @@ a device and goes on where one likes.
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
-from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,7 +23,7 @@ from porescale.lbm.stream import sweep
 CELLS_IN_BLOCK, LINKS_IN_BLOCK = 256, 64
 """Threads of a block: whole warps, as the devices' maker recommends; not tuned, since no device was at hand."""
 
-kernel_of = cache(device_kernel)
+kernel_of: Any = cache(device_kernel)
 
 
 class OpenSide(NamedTuple):
@@ -95,7 +94,7 @@ class DeviceFluid(Fluid):
             values = (*self._plates[plate], plate.links_from(), plate.signed_speed(sign))
             launch(self._kernel(exchange_links), plate.first.size, LINKS_IN_BLOCK, flat, *values)
 
-    def _kernel(self, function: FunctionType) -> Any:
+    def _kernel(self, function: Any) -> Any:
         """A kernel for the law and precision of this fluid."""
         return kernel_of(function, type(self.law_of_sweep), self.populations.dtype.type)
 
