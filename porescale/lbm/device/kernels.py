@@ -7,6 +7,8 @@ cells of a row, whose populations lie side by side in each of the nine planes.
 Plain functions: ``device_kernel`` of common/compiled/cuda.py compiles them for a law and a precision.
 """
 
+from typing import Any
+
 from porescale.common.compiled.cuda import grid
 from porescale.lbm.boundary.links import empty_halo, fill_halo
 from porescale.lbm.boundary.pressure import let_in
@@ -15,7 +17,7 @@ from porescale.lbm.collision.law import collide_row
 from porescale.lbm.stream import slots
 
 
-def sweep_cells(f, parity, law):
+def sweep_cells(f: Any, parity: Any, law: Any) -> None:
     """``sweep`` of stream.py: overwrites populations f (9, ny + 2, nx + 2);  threads: nx ny or more."""
     k = grid()
     n = f.shape[2] - 2
@@ -24,21 +26,23 @@ def sweep_cells(f, parity, law):
         collide_row(slots(f, k // n + 1, parity), x, x + 1, law)
 
 
-def fill_links(flat, halo, inner, added):
+def fill_links(flat: Any, halo: Any, inner: Any, added: Any) -> None:
     """``fill_halo`` of boundary/links.py: overwrites flat populations at ``halo``;  threads: one a link or more."""
     k = grid()
     if k < halo.shape[0]:
         fill_halo(flat, halo[k : k + 1], inner[k : k + 1], added[k : k + 1])
 
 
-def empty_links(flat, halo, inner, added):
+def empty_links(flat: Any, halo: Any, inner: Any, added: Any) -> None:
     """``empty_halo`` of boundary/links.py: overwrites flat populations at ``inner``;  threads: one a link or more."""
     k = grid()
     if k < halo.shape[0]:
         empty_halo(flat, halo[k : k + 1], inner[k : k + 1], added[k : k + 1])
 
 
-def let_in_links(flat, slots_of, to, source, along, weight, excess, force):
+def let_in_links(
+    flat: Any, slots_of: Any, to: Any, source: Any, along: Any, weight: Any, excess: Any, force: Any
+) -> None:
     """``let_in`` of boundary/pressure.py: overwrites flat populations at ``to``;  threads: one a link or more."""
     k = grid()
     if k < to.shape[0]:
@@ -46,7 +50,7 @@ def let_in_links(flat, slots_of, to, source, along, weight, excess, force):
         let_in(flat, slots_of[a:b], to[a:b], source[a:b], along[a:b], weight[a:b], excess[a:b], force[:, a:b])
 
 
-def exchange_links(flat, first, second, pull, begin, speed):
+def exchange_links(flat: Any, first: Any, second: Any, pull: Any, begin: Any, speed: Any) -> None:
     """``exchange`` of boundary/thin_plate.py: overwrites flat populations at the slots of links ``begin`` and up;
     threads: one a link or more."""
     k = grid()
