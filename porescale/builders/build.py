@@ -39,7 +39,7 @@ def system_of(scene: Scene) -> System:
     if scene.grains or scene.disc or scene.rectangle or scene.ring:
         made.grains, made.recorded = grains_of(scene, derived, made.frames)
     if scene.fluid:
-        made.fluid = fluid_of(scene.fluid, scene.domain, derived)
+        made.fluid = fluid_of(scene.fluid, scene.domain, derived, scene.run.device if scene.run else "cpu")
     if derived.scales:
         made.rectangles = on_the_lattice(scene.rectangle, derived.scales)
     if made.fluid and made.grains:

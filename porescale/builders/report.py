@@ -223,12 +223,27 @@ def _regime(density: float, gravity: float, derived: Derived, out: Report) -> No
                 "3 (rho_s - rho) g phi H/(rho c²), below 0.05")  # fmt: skip
 
 
+def _device(derived: Derived, out: Report) -> None:
+    """What the GPU needs, and what there is."""
+    from porescale.common.compiled.cuda import describe
+    from porescale.lbm.device.fluid import bytes_needed
+
+    assert derived.cells
+    name, memory_bytes = describe()
+    need = bytes_needed(*derived.cells, derived.precision)
+    out.row("memory of the GPU", need / 2**20, "MiB", name)
+    if memory_bytes and need > memory_bytes:
+        out.warn(f"the GPU has {memory_bytes / 2**30:.1f} GiB: the run will not start there")
+
+
 def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     steps = max(1, round(scene.time.end / derived.model_step))
     seconds, measured = expected_seconds(derived, steps)
     out.heading("Cost")
     out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
     out.row("memory", memory(derived) / 2**20, "MiB")
+    if scene.run and scene.run.device == "gpu" and derived.cells:
+        _device(derived, out)
     known = (
         "by this machine's last runs of such scenes" if measured else "a guess until this machine has done such a run"
     )

@@ -3,6 +3,7 @@
 Scenes are read with this class; without its checks it raises an error.
 """
 
+from porescale.builders.checks.device import check_device
 from porescale.builders.checks.fluid import check_solid_options
 from porescale.builders.checks.needed import check_needed, check_places
 from porescale.builders.initial.circles import grains_of
@@ -19,7 +20,7 @@ from porescale.scene.scene import Scene
 
 __all__ = ["Scene"]
 
-Scene.checks += [check_needed, check_places]
+Scene.checks += [check_needed, check_places, check_device]
 Fluid.checks.append(check_solid_options)
 PolygonBody.checks.append(check_random_places)
 Circles.read = grains_of

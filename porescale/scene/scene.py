@@ -35,6 +35,7 @@ from porescale.scene.measures.permeability import Permeability
 from porescale.scene.measures.probe import Probe
 from porescale.scene.measures.region import Region
 from porescale.scene.output import Output
+from porescale.scene.run import Run
 from porescale.scene.sleep import Sleep
 from porescale.scene.time import Time
 
@@ -81,6 +82,7 @@ class Scene(SceneBase):
     homogenise: Homogenise | None = None
     lubrication: Lubrication | None = None
     sleep: Sleep | None = None
+    run: Run | None = None
     look: LookSection | None = None
 
     @classmethod

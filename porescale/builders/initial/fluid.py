@@ -22,20 +22,29 @@ from porescale.scene.fluid import Fluid as FluidSection
 from porescale.scene.scene import Scene
 
 
-def fluid_of(section: FluidSection, domain: Domain, derived: Derived) -> Fluid:
-    """The lattice at the start."""
+def fluid_of(section: FluidSection, domain: Domain, derived: Derived, device: str = "cpu") -> Fluid:
+    """The lattice at the start, on a device."""
     assert derived.cells
     assert derived.scales
     unit = derived.scales.body_force
     force = (0.0, 0.0) if isinstance(section.body_force, OwnLaw) else section.body_force
     fx, fy = (component / unit for component in force)
-    fluid = Fluid(
+    fluid = _kind(device)(
         *derived.cells, derived.scales.relaxation_time, **collision_options(section), force=(fx, fy),
         sides=lattice_sides(domain, derived.scales, derived.cells), dtype=section.precision,
     )  # fmt: skip
     if section.velocity != (0.0, 0.0):
         fluid.set_flow(*(component / derived.scales.velocity for component in section.velocity))
     return fluid
+
+
+def _kind(device: str) -> type[Fluid]:
+    """The class of a fluid on a device; nothing of a GPU is imported for the CPU."""
+    if device == "cpu":
+        return Fluid
+    from porescale.lbm.device.fluid import DeviceFluid
+
+    return DeviceFluid
 
 
 def lattice_sides(domain: Domain, scales: Scales, cells: tuple[int, int]) -> Sides:

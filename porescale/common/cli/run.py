@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -33,6 +33,7 @@ def command(package: Package) -> Callable[..., int]:
         quality: Quality = None,
         settings: Settings = None,
         threads: Threads = None,
+        device: Annotated[Literal["cpu", "gpu"] | None, Parameter(help="run.device of the scene")] = None,
         resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
         overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
         error: Annotated[
@@ -47,6 +48,8 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.schema.sections import open_scene
 
         scene = require_scene(scene, package.name)
+        if device is not None:
+            settings = [*(settings or ()), f"run.device={device}"]
         chosen = None
         if error is not None or budget is not None:
             _require_free_choice(quality, resume)

@@ -23,7 +23,17 @@ from porescale.common.record.read_card import NAME as NAME
 from porescale.common.record.read_card import read_card as read_card
 
 RUNNING, FINISHED, INTERRUPTED, UNSTABLE, FAILED = "running", "finished", "interrupted", "unstable", "failed"
-FREE = ("time.end", "duration", "snapshot_interval", "series_interval", "checkpoint_seconds", "output", "title", "look")
+FREE = (
+    "time.end",
+    "duration",
+    "snapshot_interval",
+    "series_interval",
+    "checkpoint_seconds",
+    "output",
+    "title",
+    "look",
+    "run",
+)
 """Scene keys, dotted or by their last name, and sections that may change when a run is resumed: no physics."""
 
 DECIDING = ("numpy", "numba", "llvmlite")

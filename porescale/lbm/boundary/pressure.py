@@ -71,7 +71,7 @@ class OpenLinks:
         slots, to = (self.odd, self.inner) if parity else (self.even, self.halo)
         for a, one in enumerate(force):
             self.force[a] = one if np.ndim(one) == 0 else one[self._rows, self._columns]
-        _let_in(flat, slots, to, self.source, self.along, self.weight, self.excess, self.force)
+        let_in(flat, slots, to, self.source, self.along, self.weight, self.excess, self.force)
 
     def state(self) -> dict[str, Any]:
         """Prescribed densities of the pressure sides, by side; empty without such a side."""
@@ -109,7 +109,7 @@ def _table(rows: list[list[int]]) -> Integers:
 
 
 @kernel
-def _let_in(flat, slots, to, source, along, weight, excess, force):
+def let_in(flat, slots, to, source, along, weight, excess, force):
     """flat[to] <- f*_i + 2 w_i (rho_w - rho)(1 + 9/2 (c_i.u)² - 3/2 u²), of shifted collided populations.
 
     u: before the collision, which added the force (2, k): half of it too much.

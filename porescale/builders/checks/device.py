@@ -1,0 +1,20 @@
+"""What a GPU does not have: refused, one line each, and never run on the CPU instead."""
+
+from porescale.common.compiled.own import OwnLaw
+from porescale.common.core.errors import Fault
+from porescale.scene.scene import Scene
+
+REPAIR = 'take "cpu"'
+
+
+def check_device(scene: Scene) -> list[Fault]:
+    """Faults of [run] device = "gpu"."""
+    if scene.run is None or scene.run.device == "cpu":
+        return []
+    if scene.fluid is None:
+        return [Fault("run.device", "gpu", "steps fluid only, and there is none", repair=REPAIR)]
+    solids = {"grains": scene.grains, "disc": scene.disc, "rectangle": scene.rectangle, "ring": scene.ring}
+    lacking = [f"[{name}] in fluid" for name, section in solids.items() if section]
+    if isinstance(scene.fluid.body_force, OwnLaw):
+        lacking.append("a body_force of your own")
+    return [Fault("run.device", "gpu", f"does not have {name}", repair=REPAIR) for name in lacking]

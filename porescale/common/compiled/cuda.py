@@ -1,0 +1,164 @@
+"""Kernels compiled for a graphics device from the functions that the CPU compiles: numba-cuda, or its simulator.
+
+A function of one cell or of one link is written once.  ``device_function`` copies it with all that it calls: a kernel
+becomes a device function, a law function the body for the law in use, constants those of the precision in use.  What
+differs between the machines is only which thread takes which entry.
+
+numba's CUDA target is imported by the first call here, never by a run on the CPU.  With ``NUMBA_ENABLE_CUDASIM=1``, or
+after ``simulate``, it is numba's simulator: every thread of every block in plain Python, on any machine.
+"""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from importlib import import_module
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+
+from porescale.common.compiled.jit import Kernel, body_for, unchecked_view
+from porescale.common.core.errors import Fault, InputError
+
+LEAST_CAPABILITY = (6, 0)
+"""Oldest devices: the first with float64 atomics and pre-emption, and the oldest that current drivers serve."""
+
+
+def simulate() -> None:
+    """Let the simulator stand for a device in this process; must be called before anything else of this file."""
+    numba: Any = import_module("numba.core.config")
+    numba.ENABLE_CUDASIM = 1
+
+
+@cache
+def cuda() -> Any:
+    """numba's CUDA module."""
+    return import_module("numba.cuda")
+
+
+def simulated() -> bool:
+    """Whether the simulator stands for a device."""
+    return bool(vars(import_module("numba.core.config")).get("ENABLE_CUDASIM"))
+
+
+def require_device() -> None:
+    """InputError, in one line, unless there is a device that can be used, or the simulator."""
+    if simulated():
+        return
+    try:
+        found = cuda().is_available()
+    except Exception as error:  # whatever a driver that is half installed raises
+        raise InputError(Fault("device", "gpu", f"no GPU can be used: {error}")) from None
+    if not found:
+        raise InputError(
+            Fault("device", "gpu", "there is no GPU here, or no driver of one", repair='take "cpu"'),
+        )
+    capability = tuple(cuda().get_current_device().compute_capability)
+    if capability < LEAST_CAPABILITY:
+        raise InputError(Fault("device", "gpu", f"compute capability {capability}", allowed=f">= {LEAST_CAPABILITY}"))
+
+
+def describe() -> tuple[str, int]:
+    """Name of the device, or why there is none, and its memory in bytes, 0 where it is not known."""
+    try:
+        require_device()
+    except InputError as error:
+        return str(error), 0
+    if simulated():
+        return "numba's simulator", 0
+    name: Any = cuda().get_current_device().name
+    return name.decode() if isinstance(name, bytes) else str(name), int(cuda().current_context().get_memory_info()[1])
+
+
+def to_device(array: Any) -> Any:
+    """A copy of the array on the device; InputError where its memory does not suffice."""
+    try:
+        return cuda().to_device(np.ascontiguousarray(array))
+    except Exception as error:  # the driver's own type, which the simulator does not have
+        if "OUT_OF_MEMORY" not in str(error):
+            raise
+        size = f"{array.nbytes / 2**30:.2f} GiB"
+        raise InputError(Fault("device", "gpu", f"its memory does not hold {size} more")) from None
+
+
+def device_kernel(function: FunctionType, law: type, real: type) -> Any:
+    """Compile a function of arrays and numbers whose threads take their entry by ``grid``: see ``launch``.
+
+    law : of the law functions that it calls;  real : np.float32 or np.float64, of ``precision_constants``.
+    """
+    return cuda().jit(_for_device(function, law, real))
+
+
+@cache
+def device_function(function: FunctionType, law: type, real: type) -> Any:
+    """The device function of a function in plain Python, for a law and a precision."""
+    return cuda().jit(device=True)(_for_device(function, law, real))
+
+
+def launch(compiled: Any, count: int, block: int, *arguments: Any) -> None:
+    """Run a kernel of ``device_kernel`` with ``count`` threads or more, ``block`` of them in a block."""
+    if count > 0:
+        compiled[-(-count // block), block](*arguments)
+
+
+def grid() -> int:
+    """Number of the thread of a kernel of ``device_kernel``, from 0."""
+    raise TypeError("this has a meaning in device kernels only")
+
+
+def _for_device(function: FunctionType, law: type, real: type) -> FunctionType:
+    """A copy of the function in whose names everything compiled for the CPU is compiled for the device."""
+    names = dict(function.__globals__)
+    for name in function.__code__.co_names:
+        if name in names:
+            names[name] = _meaning(names[name], law, real)
+    made = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
+    made.__doc__, made.__module__ = function.__doc__, function.__module__
+    return made
+
+
+def _meaning(value: Any, law: type, real: type) -> Any:
+    """What the value of a global name becomes on the device."""
+    if value is np and not simulated():
+        return _numpy()
+    if value is grid:
+        return _numbered()
+    if value is unchecked_view:  # its plain form, a slice
+        return device_function(value, law, real)
+    if isinstance(value, Kernel):
+        return device_function(value.py_func, law, real)
+    meaning = getattr(value, "meaning", None)
+    if not isinstance(meaning, dict):
+        return value
+    bits = 8 * np.dtype(real).itemsize
+    if set(meaning) == {32, 64}:
+        return device_function(_constant(meaning[bits]), law, real)
+    body = body_for(meaning, law)
+    if body is None:
+        raise TypeError(f"{value.__name__} has no body for {law.__name__}")
+    return device_function(body.py_func, law, real)
+
+
+@cache
+def _constant(known: Any) -> Callable[[Any], Any]:
+    """A function of one number that returns ``known``."""
+    return lambda number: known
+
+
+@cache
+def _numpy() -> ModuleType:
+    """What device functions use of numpy, in the precision of the argument: numba-cuda does not know numpy's own."""
+    made: Any = ModuleType("numpy_on_device")
+    made.sqrt = math.sqrt
+    return made  # type: ignore[no-any-return]
+
+
+@cache
+def _numbered() -> Any:
+    """Device function that gives the number of the thread."""
+    return cuda().jit(device=True)(FunctionType(_thread.__code__, {"cuda": cuda()}, "thread"))
+
+
+def _thread() -> Any:
+    """Number of the thread: of its block times threads in a block, and of it in the block."""
+    return cuda.grid(1)  # type: ignore[attr-defined]  # the module, where it is compiled

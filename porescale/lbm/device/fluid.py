@@ -1,0 +1,160 @@
+"""A `Fluid` whose populations are stepped on a graphics device.
+
+Everything that is not a population stays as it is: sides, plates, law, number of steps.  What reads the populations
+(fields, moments, the state of a checkpoint) fetches them first and is the CPU's code, so a checkpoint holds nothing of
+a device and goes on where one likes.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.cuda import device_kernel, launch, require_device, to_device
+from porescale.lbm.boundary.pressure import OpenLinks
+from porescale.lbm.boundary.thin_plate import Plate
+from porescale.lbm.device.kernels import empty_links, exchange_links, fill_links, let_in_links, sweep_cells
+from porescale.lbm.fluid import Fluid, Sweep
+from porescale.lbm.lattice import row_length
+from porescale.lbm.stream import sweep
+
+CELLS_IN_BLOCK, LINKS_IN_BLOCK = 256, 64
+"""Threads of a block: whole warps, as the devices' maker recommends; not tuned, since no device was at hand."""
+
+kernel_of: Any = cache(device_kernel)
+
+
+class OpenSide(NamedTuple):
+    """Arrays of `OpenLinks` on the device, in the order of let_in_links.  even, odd : slots, and where they go."""
+
+    even: tuple[Any, Any]
+    odd: tuple[Any, Any]
+    source: Any
+    along: Any
+    weight: Any
+    force: Any
+
+
+class DeviceFluid(Fluid):
+    """A fluid on the device; arguments, attributes and results of `Fluid`.  InputError where there is no device.
+
+    populations : the CPU's copy, brought up to date by whatever reads it here; ``fetch`` before reading it otherwise.
+    """
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        require_device()
+        super().__init__(*arguments, **options)
+        self._there: Any = None
+        """Populations on the device, None where the CPU's are to be sent before the next step."""
+        self._fetched = True
+        self._links = (to_device(self.links.halo), to_device(self.links.inner))
+        self._plates: dict[Plate, tuple[Any, Any, Any]] = {}
+        self._open = {name: _open_side(own, self.force) for name, own in self.links.own.items()}
+        self._send_sides()
+
+    def _send_sides(self) -> None:
+        """Velocities and densities of the sides, as they are now."""
+        self._added = to_device(self.links.added)
+        self._excess = {name: to_device(_open_links(own).excess) for name, own in self.links.own.items()}
+
+    def fetch(self) -> None:
+        """Bring the CPU's populations up to date."""
+        if not self._fetched:
+            self._there.copy_to_host(self.padded)
+            self._fetched = True
+
+    def advance(self, cells: Sweep = sweep, *extra: Any) -> None:
+        """One step of plain fluid, as ``Fluid.advance``; ValueError with another sweep."""
+        if cells is not sweep:
+            raise ValueError("a fluid on the device takes no other sweep than that of plain fluid")
+        if self._there is None:
+            self._there = to_device(self.padded)
+        self._fetched = False
+        odd, law, flat = self.step % 2, self.law_of_sweep, self._there.reshape(self.padded.size)
+        if odd:
+            self._exchange(flat, +1.0)
+        launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, self.nx, odd, law)
+        if odd:
+            self._exchange(flat, -1.0)
+        settle = self._kernel(empty_links if odd else fill_links)
+        launch(settle, self.links.halo.size, LINKS_IN_BLOCK, flat, *self._links, self._added)
+        for name, side in self._open.items():
+            slots, to = side.odd if odd else side.even
+            values = (side.source, side.along, side.weight, self._excess[name], side.force)
+            launch(self._kernel(let_in_links), side.source.size, LINKS_IN_BLOCK, flat, slots, to, *values)
+        self.step += 1
+
+    def _exchange(self, flat: Any, sign: float) -> None:
+        """Exchange the slots of all links that plates cut, before an odd sweep (+1) and after it (-1)."""
+        for plate in self.plates:
+            if plate not in self._plates:
+                self._plates[plate] = (to_device(plate.first), to_device(plate.second), to_device(plate.pull))
+            values = (*self._plates[plate], plate.links_from(), plate.signed_speed(sign))
+            launch(self._kernel(exchange_links), plate.first.size, LINKS_IN_BLOCK, flat, *values)
+
+    def _kernel(self, function: Any) -> Any:
+        """A kernel for the law and precision of this fluid."""
+        return kernel_of(function, type(self.law_of_sweep), self.populations.dtype.type)
+
+    @contextmanager
+    def readable(self) -> Iterator[None]:
+        """As ``Fluid.readable``, with the CPU's populations up to date."""
+        self.fetch()
+        with super().readable():
+            yield
+
+    def set_flow(self, ux: Any, uy: Any, density: Any = 1.0) -> None:
+        """As ``Fluid.set_flow``."""
+        super().set_flow(ux, uy, density)
+        self._there, self._fetched = None, True
+
+    def set_force_field(self, force: NDArray[np.floating]) -> None:
+        """ValueError: the device has no force of every cell."""
+        raise ValueError("a fluid on the device has no body force of every cell")
+
+    def set_side_velocity(self, side: str, velocity: Any) -> None:
+        """As ``Fluid.set_side_velocity``."""
+        super().set_side_velocity(side, velocity)
+        self._send_sides()
+
+    def set_side_density(self, side: str, density: float) -> None:
+        """As ``Fluid.set_side_density``."""
+        super().set_side_density(side, density)
+        self._send_sides()
+
+    def state(self) -> dict[str, Any]:
+        """As ``Fluid.state``: a state of the CPU."""
+        self.fetch()
+        return super().state()
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Restore a state, wherever it comes from."""
+        super().restore(state)
+        self._there, self._fetched = None, True
+        self._send_sides()
+
+
+def bytes_needed(nx: int, ny: int, real_bytes: int) -> int:
+    """Device memory of a box of nx by ny cells: populations with their halo, two slots and a number a link."""
+    return 9 * row_length(nx) * (ny + 2) * real_bytes + 6 * (nx + ny) * (16 + real_bytes)
+
+
+def _open_links(own: Any) -> OpenLinks:
+    """The links of a kind of side that settles them itself; ValueError unless it is the pressure side."""
+    if not isinstance(own, OpenLinks):
+        raise ValueError(f"a fluid on the device has no sides of kind {type(own).__name__}")
+    return own
+
+
+def _open_side(own: Any, force: tuple[float, float]) -> OpenSide:
+    """The arrays of pressure sides on the device, with the uniform body force at each link."""
+    links = _open_links(own)
+    every = np.empty_like(links.force)
+    every[0], every[1] = force
+    return OpenSide(
+        (to_device(links.even), to_device(links.halo)), (to_device(links.odd), to_device(links.inner)),
+        to_device(links.source), to_device(links.along), to_device(links.weight), to_device(every),
+    )  # fmt: skip
