@@ -123,8 +123,8 @@ def _meaning(value: Any, law: type, real: type) -> Any:
         return _numpy()
     if value is grid:
         return _numbered()
-    if value is unchecked_view:  # its plain form, a slice
-        return device_function(value, law, real)
+    if value is unchecked_view:  # its plain form; inlined, since no device function may return a slice
+        return cuda().jit(device=True, inline="always")(value)
     if isinstance(value, Kernel):
         return device_function(value.py_func, law, real)
     meaning = getattr(value, "meaning", None)
