@@ -65,7 +65,6 @@ def test_memory_that_does_not_suffice_is_one_line(monkeypatch):
 
 
 def test_a_scene_steps_on_the_device_to_the_same_bits():
-    cuda.simulate()
     cpu, gpu = build(Scene(**SCENE)), build(Scene(**ON_GPU))
     for simulation in (cpu, gpu):
         for _ in range(2):
@@ -78,5 +77,4 @@ def test_a_scene_steps_on_the_device_to_the_same_bits():
 
 
 def test_check_says_what_the_gpu_needs():
-    cuda.simulate()
     assert "memory of the GPU" in str(report(Scene(**ON_GPU)))

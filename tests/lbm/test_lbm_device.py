@@ -10,13 +10,9 @@ import sys
 import numpy as np
 import pytest
 
-from porescale.common.compiled.cuda import simulate
 from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.device.fluid import DeviceFluid, bytes_needed
 from porescale.lbm.fluid import Fluid
-
-simulate()
-
-from porescale.lbm.device.fluid import DeviceFluid, bytes_needed  # noqa: E402
 
 FORCE = (2e-4, -1e-4)
 BOXES = {

@@ -4,8 +4,8 @@ A function of one cell or of one link is written once.  ``device_function`` copi
 becomes a device function, a law function the body for the law in use, constants those of the precision in use.  What
 differs between the machines is only which thread takes which entry.
 
-numba's CUDA target is imported by the first call here, never by a run on the CPU.  With ``NUMBA_ENABLE_CUDASIM=1``, or
-after ``simulate``, it is numba's simulator: every thread of every block in plain Python, on any machine.
+numba's CUDA target is imported by the first call here, never by a run on the CPU.  With ``NUMBA_ENABLE_CUDASIM=1`` in
+the environment it is numba's simulator: every thread of every block in plain Python, on any machine.
 """
 
 import math
@@ -22,12 +22,6 @@ from porescale.common.core.errors import Fault, InputError
 
 LEAST_CAPABILITY = (6, 0)
 """Oldest devices: the first with float64 atomics and pre-emption, and the oldest that current drivers serve."""
-
-
-def simulate() -> None:
-    """Let the simulator stand for a device in this process; must be called before anything else of this file."""
-    numba: Any = import_module("numba.core.config")
-    numba.ENABLE_CUDASIM = 1
 
 
 @cache
