@@ -22,8 +22,8 @@ settings.load_profile("steady")
 
 # Tests compare one thread with two, on machines with one core too; read by numba when it is first imported.
 os.environ.setdefault("NUMBA_NUM_THREADS", str(max(2, os.cpu_count() or 1)))
-# Kernels of a GPU run in numba's simulator, with 0 on the GPU of the machine.  A variable, not a setting made later: numba
-# reads all its settings anew when a variable of its own changes.
+# Kernels of a GPU run in numba's simulator, with 0 on the GPU of the machine.  A variable, not a setting made later:
+# numba reads all its settings anew when a variable of its own changes.
 os.environ.setdefault("NUMBA_ENABLE_CUDASIM", "1")
 # Threads of OpenBLAS spin while they wait for each other: beside other work a solve of 1 s takes minutes.  Read at the
 # first import of numpy.

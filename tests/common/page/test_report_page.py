@@ -261,7 +261,8 @@ def test_nothing_leaves_the_page_and_nobody_is_kept_out(page, heard, axe, writte
         page.emulate_media(color_scheme=scheme)
         assert axe(page) == []
     page.set_viewport_size({"width": 390, "height": 844})
-    page.wait_for_function("document.documentElement.scrollWidth <= 390")  # canvases follow a frame later
+    page.evaluate("new Promise(then => requestAnimationFrame(() => requestAnimationFrame(then)))")  # canvases follow
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 def test_hover_says_what_the_files_say(page, run, written):
