@@ -234,7 +234,7 @@ def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
         (law, "cut"), (law, "moments"), (moments, "moments"),
         (law, "shear_rate"), (law, "collide"), (law, "half_force"), (trt, "relax_halves"),
         (trt, "relax_by"), (trt, "symmetric_equilibrium"), (trt, "symmetric_gain"), (trt, "magic_rate"),
-        (rim, "fill_halo"), (rim, "empty_halo"),
+        (rim, "pass_on"), (rim, "pass_one"),
         (room, "exchange"), (moments, "_moment_row"),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, getattr(module, name).py_func)

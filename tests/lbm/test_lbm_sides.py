@@ -149,7 +149,7 @@ def test_a_step_with_open_sides_of_plain_python_is_the_compiled_one(monkeypatch)
     from porescale.lbm.boundary import velocity as velocity_links
 
     compiled, _ = pair("velocity", "pressure", "pressure", "wall", nx=NX, ny=NY)
-    names = [(rim, "fill_halo"), (rim, "empty_halo"), (open_links, "let_in")]
+    names = [(rim, "pass_on"), (rim, "pass_one"), (open_links, "let_in")]
     names += [(velocity_links, "_add"), (open_links, "moments")]
     for module, name in names:
         monkeypatch.setattr(module, name, getattr(module, name).py_func)

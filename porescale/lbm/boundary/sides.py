@@ -114,8 +114,8 @@ class Bounds:
         return self.sides.boundary(self.owners(link)[0])
 
     def partners(self) -> list[Link]:
-        """Every link that is paired with a slot: all but those that a kind settles itself."""
-        return [link for link in self.links() if not self.owner(link).settles]
+        """Every link that is paired with a slot, all but those that a kind settles itself, row by row as sweeps go."""
+        return sorted((link for link in self.links() if not self.owner(link).settles), key=lambda link: link.y)
 
     def beyond(self, link: Link) -> tuple[int, int]:
         """The cell that a link leads to, taken back into the box through periodic sides."""

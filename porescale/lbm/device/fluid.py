@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.cuda import device_kernel, launch, require_device, to_device
 from porescale.lbm.boundary.pressure import OpenLinks
 from porescale.lbm.boundary.thin_plate import Plate
-from porescale.lbm.device.kernels import empty_links, exchange_links, fill_links, let_in_links, sweep_cells
+from porescale.lbm.device.kernels import exchange_links, let_in_links, pass_on_links, sweep_cells
 from porescale.lbm.fluid import Fluid, Sweep
 from porescale.lbm.lattice import row_length
 from porescale.lbm.stream import sweep
@@ -79,8 +79,9 @@ class DeviceFluid(Fluid):
         launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, self.nx, odd, law)
         if odd:
             self._exchange(flat, -1.0)
-        settle = self._kernel(empty_links if odd else fill_links)
-        launch(settle, self.links.halo.size, LINKS_IN_BLOCK, flat, *self._links, self._added)
+        halo, inner = self._links
+        of, to = (halo, inner) if odd else (inner, halo)
+        launch(self._kernel(pass_on_links), self.links.halo.size, LINKS_IN_BLOCK, flat, of, to, self._added)
         for name, side in self._open.items():
             slots, to = side.odd if odd else side.even
             values = (side.source, side.along, side.weight, self._excess[name], side.force)

@@ -10,7 +10,7 @@ Plain functions: ``device_kernel`` of common/compiled/cuda.py compiles them for 
 from typing import Any
 
 from porescale.common.compiled.cuda import grid
-from porescale.lbm.boundary.links import empty_halo, fill_halo
+from porescale.lbm.boundary.links import pass_one
 from porescale.lbm.boundary.pressure import let_in
 from porescale.lbm.boundary.thin_plate import exchange
 from porescale.lbm.collision.law import collide_row
@@ -25,18 +25,11 @@ def sweep_cells(f: Any, n: Any, parity: Any, law: Any) -> None:
         collide_row(slots(f, n, k // n + 1, parity), x, x + 1, law)
 
 
-def fill_links(flat: Any, halo: Any, inner: Any, added: Any) -> None:
-    """``fill_halo`` of boundary/links.py: overwrites flat populations at ``halo``;  threads: one a link or more."""
+def pass_on_links(flat: Any, of: Any, to: Any, added: Any) -> None:
+    """``pass_on`` of boundary/links.py: overwrites flat populations at ``to``;  threads: one a link or more."""
     k = grid()
-    if k < halo.shape[0]:
-        fill_halo(flat, halo[k : k + 1], inner[k : k + 1], added[k : k + 1])
-
-
-def empty_links(flat: Any, halo: Any, inner: Any, added: Any) -> None:
-    """``empty_halo`` of boundary/links.py: overwrites flat populations at ``inner``;  threads: one a link or more."""
-    k = grid()
-    if k < halo.shape[0]:
-        empty_halo(flat, halo[k : k + 1], inner[k : k + 1], added[k : k + 1])
+    if k < to.shape[0]:
+        pass_one(flat, of, to, added, k)
 
 
 def let_in_links(
