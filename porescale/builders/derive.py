@@ -14,7 +14,7 @@ from porescale.builders.checks.numbers import check_controls
 from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
 from porescale.builders.checks.packing import check_compressed
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
-from porescale.builders.checks.regime import check_regime, expected_speed
+from porescale.builders.checks.regime import check_regime, expected_speed, travel_step
 from porescale.builders.initial.clumps import lightest
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, placed_frames, sizes_of
@@ -25,7 +25,8 @@ from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
-from porescale.dem.timestep import packing_limit, stable_step
+from porescale.dem.sanity import WORST_TRAVEL
+from porescale.dem.timestep import SAFETY, packing_limit, stable_step
 from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.bodies.gate import Gate
 from porescale.scene.contact import Contact
@@ -94,9 +95,17 @@ def derive(scene: Scene) -> Derived:
                 smallest = (light if radius is None else min(smallest[0], light)), smallest[1]
         limit = min(packing_limit(it, *smallest) for it in every)
         safe = stable_step(every, *smallest)
+        speed = expected_speed(scene, scales, sizes, frames)
+        travel = travel_step(scene, speed, sizes[0] / 2, frames)
+        safe = min(safe, SAFETY * travel)
         if frames and scales:
-            safe = min(safe, longest_step(frames, expected_speed(scene, scales, sizes, frames)))
+            safe = min(safe, longest_step(frames, speed))
         step, steps = _contact_step(scene.contact, safe, limit, scales, faults)
+        if step > travel:
+            warnings.append(
+                f"contact.step = {step:.3g} s: at {speed:.3g} m/s, which is to be expected, a grain moves more than "
+                f"{WORST_TRAVEL:g} of the smallest radius in it, where a run stops; {SAFETY * travel:.2g} s is safe"
+            )
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and law:

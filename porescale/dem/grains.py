@@ -24,7 +24,7 @@ from porescale.dem.resting.frictionless import law_of_steps, may_turn
 from porescale.dem.resting.static import leave_out, what_stands
 from porescale.dem.state import State
 from porescale.dem.step import contact_steps
-from porescale.dem.timestep import lightest, stable_step
+from porescale.dem.timestep import SAFETY, lightest, stable_step
 
 SKIN = 0.5  # of the mean radius: measured 12 % faster than 0.3 in a dry collapse, 2 % slower in a pile at rest
 
@@ -101,7 +101,7 @@ class Grains(State):
         self.rectangle_spring = np.zeros((len(rectangles), self.discs.count, self.springs))
         self.rectangle_force = np.zeros((len(rectangles), 2))
 
-    def stable_step(self, *, safety: float = 0.8, steps_per_contact: float = 10.0) -> float:
+    def stable_step(self, *, safety: float = SAFETY, steps_per_contact: float = 10.0) -> float:
         """A safe contact step, s; see timestep.stable_step.  Clumps count as the disc of the same limit."""
         mass = self.discs.mass
         if self.drivers is not None and self.drivers.clumps.count:

@@ -9,6 +9,8 @@ from porescale.dem.discs import Discs
 
 NEIGHBOURS = 6
 """Most discs that touch a disc and are no smaller than it: the kissing number of the plane."""
+SAFETY = 0.8
+"""Share of a limit at which steps are chosen."""
 HALVINGS = 60
 """Steps to a fixed point each of which halves the logarithm of the distance, at least."""
 
@@ -66,7 +68,7 @@ def stable_step(
     mass: float,
     radius: float | None = None,
     *,
-    safety: float = 0.8,
+    safety: float = SAFETY,
     steps_per_contact: float = 10.0,
 ) -> float:
     """A safe contact step (s) for discs whose lightest has ``mass`` (kg/m) and ``radius`` (m) under all of ``laws``.

@@ -140,3 +140,35 @@ def test_resolution_is_judged_by_the_smallest_grain():
     assert "a spacing of 2.1e-05 m" in line
     assert said(0.5) == []  # 3.2
     assert len(said(0.6)) == 1  # 2.6
+
+
+def soft(**contact: Any) -> Scene:
+    """Soft dry grains that collapse into a wide box."""
+    packing = {"left": 0, "width": 0.01, "height": 0.03, "diameter": 0.001, "packing_fraction": 0.6, "settle": False}
+    law = {"stiffness": 1e4, "tangential_stiffness": 5e3, "restitution": 0.5, "friction": 0.5}
+    return Scene(
+        domain={"width": 0.06, "height": 0.06},
+        time={"end": 0.3},
+        output={"snapshot_interval": 0.3, "series_interval": 0.3},
+        grains={"density": 2500, "packing": packing},
+        contact=law | contact,
+    )
+
+
+def test_the_contact_step_that_is_chosen_allows_the_speed_to_expect():
+    made = derive(soft())
+    assert made.contact_step is not None
+    assert made.diameters is not None
+    assert made.speed == pytest.approx((2 * 9.81 * 0.03) ** 0.5, rel=1e-2)
+    assert made.contact_step * made.speed == pytest.approx(0.8 * 0.1 * made.diameters[0] / 2)
+    assert not said(soft(), "contact.step")
+    stiff = {"stiffness": 1e6, "tangential_stiffness": 5e5}  # there contacts decide, not the speed
+    assert derive(soft(**stiff)).contact_step == derive(soft(**stiff).with_({"gravity": [0, 0]})).contact_step
+
+
+def test_a_contact_step_too_long_for_the_speed_to_expect_is_warned_of():
+    made = derive(soft())
+    assert made.contact_step is not None
+    assert not said(soft(step=1.24 * made.contact_step), "contact.step")
+    (line,) = said(soft(step=1.26 * made.contact_step), "contact.step")
+    assert line.endswith(f"where a run stops; {made.contact_step:.2g} s is safe")

@@ -83,8 +83,8 @@ def pass_one(flat, of, to, added, k):
 def pass_on(flat, of, to, added):
     """All links: after an even step halo slots get what comes back in, after an odd one what went out comes in.
 
-    Overwrites flat populations at ``to``.  Spread over the threads as the rows of the sweep are: a slot that another core has
-    in its cache is fetched from there, now and again in the next sweep, a seventh of a step of 512 x 512 cells.
+    Overwrites flat populations at ``to``.  Spread over the threads as the rows of the sweep are: a slot that another
+    core has in its cache is fetched from there, and again in the next sweep, a seventh of a step of 512 x 512 cells.
     """
     for k in prange(to.shape[0]):
         pass_one(flat, of, to, added, k)
