@@ -127,7 +127,7 @@ def repeated(
     return named(made)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ensemble:
     """All repeats of a point.  of : the point;  over : keys in which they differ;  ends : of those that have ended, in
     their order;  asked : how many there are to be."""
