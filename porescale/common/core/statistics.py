@@ -65,7 +65,7 @@ def needed(values: Sequence[float], width: float) -> float:
 
 
 @lru_cache(maxsize=4096)
-def bootstrap(values: tuple[float, ...], level: float = LEVEL) -> tuple[float, float]:
+def bootstrap(values: tuple[float, ...], level: float = LEVEL, resamples: int = RESAMPLES) -> tuple[float, float]:
     """Ends of the bootstrap's interval of the mean of independent ``values``, in their unit; nan below LEAST values.
 
     Bias-corrected and accelerated (Efron 1987, J. Am. Stat. Assoc. 82, 171), by a fixed generator from the values in
@@ -80,7 +80,7 @@ def bootstrap(values: tuple[float, ...], level: float = LEVEL) -> tuple[float, f
     from scipy import stats
 
     found = stats.bootstrap(
-        (drawn,), np.mean, n_resamples=RESAMPLES, confidence_level=level, method="BCa", rng=np.random.default_rng(0)
+        (drawn,), np.mean, n_resamples=resamples, confidence_level=level, method="BCa", rng=np.random.default_rng(0)
     ).confidence_interval
     return float(found.low), float(found.high)
 

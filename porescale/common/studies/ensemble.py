@@ -203,7 +203,7 @@ def judged(values: Sequence[float], complete: bool, row: Mapping[str, Any]) -> J
     value, tolerance = float(row["value"]), float(row["tolerance"])
     inside = sum(abs(it - value) <= tolerance for it in sample.values)
     off, half = abs(sample.mean - value), sample.half
-    if complete and never == len(values):
+    if complete and 0 < never == len(values):
         return Judged(sample, absent, never, FAIL)
     if complete and len(sample.values) == len(values) and math.isfinite(half):
         if off + half <= tolerance:
