@@ -56,12 +56,14 @@ class DeviceFluid(Fluid):
         self._links = (to_device(self.links.halo), to_device(self.links.inner))
         self._plates: dict[Plate, tuple[Any, Any, Any]] = {}
         self._open = {name: _open_side(own, self.force) for name, own in self.links.own.items()}
-        self._send_sides()
+        self._added = to_device(self.links.added)
+        self._excess = {name: to_device(_open_links(own).excess) for name, own in self.links.own.items()}
 
     def _send_sides(self) -> None:
         """Velocities and densities of the sides, as they are now."""
-        self._added = to_device(self.links.added)
-        self._excess = {name: to_device(_open_links(own).excess) for name, own in self.links.own.items()}
+        self._added.copy_to_device(self.links.added)
+        for name, own in self.links.own.items():
+            self._excess[name].copy_to_device(_open_links(own).excess)
 
     def send(self) -> None:
         """Bring the device's populations up to date."""
