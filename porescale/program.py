@@ -54,13 +54,19 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         if pictures and scene.output.report:
             write_report(finished, PROGRAM)
 
-    packing = scene.grains.packing if scene.grains else None
     gpu, driver = gpu_of(scene)
     device = {"name": gpu, "driver": driver} if gpu else {"name": "cpu"}
-    card = {**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}, "device": device}
+    card = {**card, "seeds": seeds(scene), "device": device}
     outcome = drive_scene(model, folder, scene, card=card, after=after, **options)
     remember(model.derived, outcome.steps_per_second, gpu)
     return outcome
+
+
+def seeds(scene: Scene) -> dict[str, int]:
+    """Seeds of all that the scene draws at random, by key: of its packing, and of polygons placed at random."""
+    packing = scene.grains.packing if scene.grains else None
+    drawn = {f"polygon[{at}].seed": it.seed for at, it in enumerate(scene.polygon) if it.number is not None}
+    return ({"grains.packing.seed": packing.seed} if packing else {}) | drawn
 
 
 def show(folder: Path) -> list[Path]:
@@ -101,6 +107,7 @@ PROGRAM = Program(
     report=report,
     show=show,
     look=look,
+    seeds=seeds,
     measured=("probe", "flux", "line", "region"),
     measure=measure,
     widget=widget,
