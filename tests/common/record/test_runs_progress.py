@@ -96,6 +96,14 @@ def test_time_left_counts_from_the_first_step_not_from_the_compiling(monkeypatch
     assert watch.left() == pytest.approx(4.9)
 
 
+def test_a_last_step_beyond_the_end_is_no_more_than_all():
+    watch = Watch("dam", 0.0, 0.4, quiet=True)
+    watch.update(20, 0.3)
+    assert "(75 %)" in watch.line()  # the twin
+    watch.update(26, 0.4024)
+    assert "t = 0.4024 of 0.4 s (100 %)" in watch.line()
+
+
 @pytest.mark.parametrize(("seconds", "said"), [(8.2, "8 s"), (200, "3 min 20 s"), (7500, "2 h 05 min")])
 def test_durations_are_said_as_people_do(seconds, said):
     assert duration(seconds) == said
