@@ -29,6 +29,7 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataC
 from numba.core.errors import NumbaWarning
 from numba.extending import intrinsic, overload
 
+from porescale.common.compiled import library
 from porescale.common.compiled.cache import keep_only_used, mark_used, writable
 from porescale.common.compiled.jit import GIVEN, body_for, cache_folder, prange, prefetch, thread, unchecked_view
 from porescale.common.compiled.kernel_key import Unknown, key_of, warning
@@ -40,13 +41,18 @@ llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
 # Where the folder cannot be written numba would cache beside the sources, or give up: compile anew then.
 _KEPT = writable(cache_folder())
 _FLAGS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
-_INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True}
+_INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True, **library.INNER}
+library.use()
 _MEANT = {"prange": (prange, numba.prange), "thread": (thread, vars(numba)["get_thread_id"])}
 """What kernels import from jit.py under names for which numba accepts its own objects only."""
 
 
-def dispatcher(function: FunctionType, options: dict[str, Any]) -> Any:
-    """numba's dispatcher of a function; in the function's module, names of jit.py come to mean numba's own objects."""
+def dispatcher(function: FunctionType, options: dict[str, Any], *, inner: bool = False) -> Any:
+    """numba's dispatcher of a function; in the function's module, names of jit.py come to mean numba's own objects.
+
+    inner : for calls from kernels, not from Python.
+    """
+    options = {**options, **(library.INNER if inner else library.OUTER)}
     names = function.__globals__
     for name, (ours, own) in _MEANT.items():
         if name in function.__code__.co_names and names.get(name) is ours:
@@ -70,7 +76,7 @@ def surroundings() -> str:
     return hashlib.sha256(repr((sources, versions, flags)).encode()).hexdigest()
 
 
-_MACHINERY = ("compiling", "jit", "kernel_key", "simd", "simd_code")
+_MACHINERY = ("compiling", "jit", "kernel_key", "library", "simd", "simd_code")
 
 
 def _described(kind: Any) -> Any:
