@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +37,13 @@ def build(scene: Scene) -> Simulation:
     from porescale.builders.build import build as build_scene
 
     return build_scene(scene)
+
+
+def rehearsed(scene: Scene) -> AbstractContextManager[None]:
+    """Within this, a second process compiles kernels of the scene."""
+    from porescale.builders.rehearsal import rehearsed as rehearsed_scene
+
+    return rehearsed_scene(scene)
 
 
 def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], **options: Any) -> Outcome:
@@ -94,6 +102,7 @@ PROGRAM = Program(
     version=VERSION,
     scene=scene_type,
     build=build,
+    rehearsed=rehearsed,
     drive=drive,
     report=report,
     show=show,

@@ -69,8 +69,11 @@ def command(package: Package) -> Callable[..., int]:
         use_threads(threads)  # numba counts them; unless moving frames were to be checked, it is imported only now
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
-        model = package.build(opened.scene)
-        outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
+        with package.rehearsed(opened.scene):
+            model = package.build(opened.scene)
+            outcome = package.drive(
+                model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite
+            )
         if not quiet:
             print(summary(package.name, opened.name, folder, outcome))
             if chosen is not None:
