@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time as clock
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,10 +34,14 @@ def report(scene: Scene) -> Report:
 
 
 def build(scene: Scene) -> Simulation:
-    """The simulation of a scene."""
+    """The simulation of a scene, which knows how long it took to build."""
     from porescale.builders.build import build as build_scene
+    from porescale.common.compiled.turns import TURNS
 
-    return build_scene(scene)
+    began, compiling = clock.perf_counter(), TURNS.seconds
+    model = build_scene(scene)
+    model.built_in = clock.perf_counter() - began - (TURNS.seconds - compiling)
+    return model
 
 
 def rehearsed(scene: Scene) -> AbstractContextManager[None]:
@@ -49,7 +54,7 @@ def rehearsed(scene: Scene) -> AbstractContextManager[None]:
 def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], **options: Any) -> Outcome:
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.analysis.bed_permeability import write_permeability
-    from porescale.builders.cost import remember
+    from porescale.builders.cost import BUILDING, FINISHING, RECORDING, expected, remember, remember_run, snapshot_count
     from porescale.common.api.run_scene import drive_scene
     from porescale.common.page.page import write_report
     from porescale.common.record.open_run import open_run
@@ -63,8 +68,14 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
 
     packing = scene.grains.packing if scene.grains else None
     card = {**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}}
-    outcome = drive_scene(model, folder, scene, card=card, after=after, **options)
+    steps = max(1, round(scene.time.end / model.derived.model_step))
+    count = snapshot_count(scene.time.end, scene.output.snapshot_interval)
+    finish = expected(model.derived, steps, count).finishing
+    outcome = drive_scene(model, folder, scene, card=card, after=after, finish=finish, **options)
     remember(model.derived, outcome.steps_per_second)
+    if outcome.steps_per_second and not options.get("resume"):
+        taken = {BUILDING: model.built_in, RECORDING: outcome.recording, FINISHING: outcome.finishing}
+        remember_run(model.derived, count, taken)
     return outcome
 
 

@@ -1,7 +1,7 @@
 """``python -m porescale.builders.rehearsal``: comes to the kernels of a scene sooner than its run does.
 
-The packing is placed loosely rather than settled; then a few steps are made, rows and a snapshot.  Nothing is written but
-kernels.  A scene that takes much memory, or names a user's own functions, is not rehearsed.
+The packing is placed loosely rather than settled; then a few steps are made, a row and a snapshot.  Nothing is written
+but kernels.  A scene that takes much memory, or names a user's own functions, is not rehearsed.
 """
 
 from contextlib import AbstractContextManager, nullcontext
@@ -23,16 +23,14 @@ STEPS = (1, 1, 2)
 
 
 def rehearsed(scene: Scene) -> AbstractContextManager[None]:
-    """Within this, kernels of ``scene`` are compiled by a second process, too, if there are cores and threads for it."""
+    """Within this, kernels of ``scene`` are compiled by a second process, too, if there are cores for it."""
     from porescale.common.schema.own import on_card
     from porescale.common.schema.sections import scene_as_dict
 
     if threads() < 2 or on_card(scene) or (scene.run and scene.run.device != "cpu") or memory(derive(scene)) > LARGEST:
         return nullcontext()
     folder = scene.source.folder
-    return ahead(
-        __name__, lambda: {"scene": scene_as_dict(scene), "folder": str(folder or ""), "threads": threads()}
-    )
+    return ahead(__name__, lambda: {"scene": scene_as_dict(scene), "folder": str(folder or ""), "threads": threads()})
 
 
 def loosely(scene: Scene) -> Scene:

@@ -45,6 +45,7 @@ def command(package: Package) -> Callable[..., int]:
         quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
     ) -> int:
         """Run a scene and write its run folder."""
+        from porescale.common.record.progress import Watch
         from porescale.common.schema.sections import open_scene
 
         scene = require_scene(scene, package.name)
@@ -70,7 +71,8 @@ def command(package: Package) -> Callable[..., int]:
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
         with package.rehearsed(opened.scene):
-            model = package.build(opened.scene)
+            with Watch(opened.name, 0.0, opened.scene.time.end, quiet=quiet):
+                model = package.build(opened.scene)
             outcome = package.drive(
                 model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite
             )

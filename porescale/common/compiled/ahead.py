@@ -1,8 +1,8 @@
 """A second process that compiles kernels while the run begins.
 
-The first process compiles kernels in the order in which it comes to them.  Where one is not on disk, and a core is free,
-a second process is started with the same scene; it comes to later kernels sooner, since it leaves out what takes time
-but no kernels of its own.  Both keep what they compile on disk, and neither begins with what the other has begun
+The first process compiles kernels in the order in which it comes to them.  Where one is not on disk, and there are two
+cores, a second process is started with the same scene; it comes to later kernels sooner, since it leaves out what takes
+time but no kernels of its own.  Both keep what they compile on disk, and neither begins with what the other has begun
 (turns.py).  Which of them compiled a kernel changes no bit.
 
 The second process is asked to end by the end of its input, which also comes when the first one is killed.  It then ends
@@ -88,4 +88,7 @@ def serve(work: Callable[[Any], object]) -> None:
             os._exit(0)
 
     threading.Thread(target=leave, daemon=True).start()
-    work(given)
+    try:
+        work(given)
+    finally:
+        os._exit(0)  # the thread still reads

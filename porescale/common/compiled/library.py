@@ -1,4 +1,4 @@
-"""Machine code is made for kernels that Python calls; what they call is merged into them, and is code of its own nowhere.
+"""Machine code is made for kernels that Python calls; what they call is merged into them, and has none of its own.
 
 numba makes every function that a kernel calls ready to be called by itself: machine code, and two functions more that
 translate its arguments from Python and from C.  All three are thrown away, since the function is compiled once more as

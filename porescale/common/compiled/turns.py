@@ -24,23 +24,28 @@ SUFFIX = ".nbc.lock"
 class Turns:
     """The kernel that this process compiles.
 
-    count : kernels compiled so far, this one included;  name : its name, "" for none;  first : called before the first
+    count : kernels compiled so far, this one included;  name : its name, "" for none;  seconds : that they took, waits
+    included;  kept : where they are kept;  first : called before the first
     one, as `when_first` says;  writing : held while a file of a kernel is written.
     """
 
     count: int = 0
     name: str = ""
+    seconds: float = 0.0
+    kept: list[str] = field(default_factory=list)
     first: list[Callable[[], object]] = field(default_factory=list)
     patient: bool = True
     writing: Any = field(default_factory=Lock)
     clock: Callable[[], float] = time.monotonic
     sleep: Callable[[float], object] = time.sleep
     _lock: Any = None
+    _began: float = 0.0
 
     def take(self, name: str, path: Path) -> bool:
         """Begin with a kernel that is kept at ``path`` without suffix; True where another process was waited for."""
         self.end()
-        self.count, self.name = self.count + 1, name
+        self.count, self.name, self._began = self.count + 1, name, self.clock()
+        self.kept.append(path.name)
         while self.first:
             self.first.pop()()
         from filelock import FileLock, Timeout
@@ -52,9 +57,9 @@ class Turns:
                 lock.acquire(blocking=False)
             except Timeout:
                 waited = True
-                self.patient = self.clock() - began < LONGEST
                 self.sleep(LOOK_EVERY)
-            except (OSError, NotImplementedError):  # no room, no right to write, or a disk without locks
+                self.patient = self.clock() - began < LONGEST
+            except (OSError, RuntimeError):  # no room, no right to write, or a disk without locks
                 return waited
             else:
                 self._lock = lock
@@ -63,7 +68,8 @@ class Turns:
 
     def end(self) -> None:
         """The kernel is made, or was not to be made."""
-        self.name = ""
+        if self.name:
+            self.name, self.seconds = "", self.seconds + self.clock() - self._began
         if self._lock is not None:
             lock, self._lock = self._lock, None
             with suppress(OSError):

@@ -260,5 +260,7 @@ def carry(old_start, old_partner, old_carried, start, partner, carried):
             while old < end and old_partner[old] < partner[k]:
                 old += 1
             known = old < end and old_partner[old] == partner[k]
-            for c in range(carried.shape[1]):  # rows assigned whole take three seconds to compile: their shapes are tested
+            for c in range(
+                carried.shape[1]
+            ):  # rows assigned whole take three seconds to compile: their shapes are tested
                 carried[k, c] = old_carried[old, c] if known else 0.0
