@@ -25,9 +25,10 @@ without them a run of a small scene would make every machine look slow."""
 START = 2.0
 """Seconds until a scene is read and all is imported."""
 BESIDES, BUILDING, RECORDING, FINISHING, COMPILING = "besides", "building", "recording", "finishing", "compiling"
-PARTS = {BUILDING: (0.5, 0.004, 0.0), RECORDING: (0.01, 1e-5, 1e-7), FINISHING: (0.03, 1e-5, 1e-7)}
-"""Nominal seconds of what is no step: of each, of each disc in it, and of each cell.  Building (a packing settles) is
-done once, the others for each snapshot: rows, snapshots and checkpoints; pictures, film and page."""
+PARTS = {BUILDING: (0.5, 0.0, 2e-3, 0.0), RECORDING: (0.2, 0.01, 1e-5, 1e-7), FINISHING: (3.0, 0.02, 1e-5, 1e-7)}
+"""Nominal seconds of what is no step: once, of each snapshot, and for each disc and each cell in it.  Building: a packing
+settles;  recording: rows, snapshots and checkpoints;  finishing: pictures, film and page.  Discs count once in the
+first."""
 KERNELS = 50.0
 """Nominal seconds of compiling all kernels of a scene."""
 SNAPSHOT = 1000.0
@@ -107,8 +108,8 @@ def expected(derived: Derived, steps: int, snapshots: int) -> Expected:
 def _nominal(part: str, derived: Derived, snapshots: int) -> float:
     """Nominal seconds of a part of a run."""
     cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
-    each, disc, cell = PARTS[part]
-    return (each + disc * derived.grain_count + cell * cells) * (1 if part == BUILDING else snapshots)
+    once, each, disc, cell = PARTS[part]
+    return once + (each + disc * derived.grain_count + cell * cells) * (1 if part == BUILDING else snapshots)
 
 
 def _compiling(known: dict[str, Any]) -> float:
@@ -121,7 +122,7 @@ def _compiling(known: dict[str, Any]) -> float:
 
 
 def remember_run(derived: Derived, snapshots: int, seconds: dict[str, float]) -> None:
-    """Note what the `PARTS` of a run took, and the kernels that it compiled, for the next ``check``."""
+    """Note, as `remember` does, what the `PARTS` of a run took, and the kernels that it compiled, for the next ``check``."""
     every, kind = _besides(), _kind(derived)
     known = every.setdefault(kind, {})
     for part in PARTS:
