@@ -129,8 +129,9 @@ def remember_run(derived: Derived, snapshots: int, seconds: dict[str, float]) ->
         taken = seconds.get(part, 0.0) / _nominal(part, derived, snapshots)
         if math.isfinite(taken) and taken > 0.0:
             known[part] = [*known.get(part, []), taken][-LAST:]
-    if len(TURNS.kept) >= len(known.get("kernels", [])):  # else a few that changed
-        known |= {"kernels": TURNS.kept, COMPILING: [TURNS.seconds]}
+    kernels = list(dict.fromkeys(TURNS.kept))
+    if kernels and len(kernels) >= len(known.get("kernels", [])):  # else a few that changed
+        known |= {"kernels": kernels, COMPILING: [TURNS.seconds]}
     _write({"slowness": _slowness(), BESIDES: every})
 
 

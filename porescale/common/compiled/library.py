@@ -4,7 +4,7 @@ numba makes every function that a kernel calls ready to be called by itself: mac
 translate its arguments from Python and from C.  All three are thrown away, since the function is compiled once more as
 a part of its caller.  They take a third of the time of compiling.  Here a function that a kernel calls stays what LLVM
 merges into the caller: `INNER` are the options for it, and `Library` makes machine code when an address is asked for.
-The machine code of kernels is the same.
+The machine code of kernels is the same: byte for byte in eight of nine that were compared, a few instructions more in one.
 
 `use` installs it for numba's target of the processor.  It takes parts of numba that are not public.
 """
@@ -23,7 +23,7 @@ _ENVIRONMENT = "_ZN08NumbaEnv"
 """How names of environments begin: what a function needs of Python, such as the text of its errors."""
 
 
-class Library(codegen.JITCodeLibrary):  # type: ignore[misc]
+class Library(codegen.JITCodeLibrary):
     """Code of a function, in LLVM's form until the address of a function in it is asked for."""
 
     _emitted = False
@@ -62,7 +62,7 @@ class Library(codegen.JITCodeLibrary):  # type: ignore[misc]
         return kept
 
 
-class Codegen(codegen.JITCPUCodegen):  # type: ignore[misc]
+class Codegen(codegen.JITCPUCodegen):
     """Makes such libraries."""
 
     _library_class = Library
