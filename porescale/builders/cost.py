@@ -122,7 +122,7 @@ def _compiling(known: dict[str, Any]) -> float:
 
 
 def remember_run(derived: Derived, snapshots: int, seconds: dict[str, float]) -> None:
-    """Note, as `remember` does, what the `PARTS` of a run took, and the kernels that it compiled, for the next ``check``."""
+    """Note, as `remember` does, what the `PARTS` of a run took (s) and what it compiled, for the next ``check``."""
     every, kind = _besides(), _kind(derived)
     known = every.setdefault(kind, {})
     for part in PARTS:

@@ -4,7 +4,7 @@ numba makes every function that a kernel calls ready to be called by itself: mac
 translate its arguments from Python and from C.  All three are thrown away, since the function is compiled once more as
 a part of its caller.  They take a third of the time of compiling.  Here a function that a kernel calls stays what LLVM
 merges into the caller: `INNER` are the options for it, and `Library` makes machine code when an address is asked for.
-The machine code of kernels is the same: byte for byte in eight of nine that were compared, a few instructions more in one.
+The machine code of kernels is the same: in every byte of eight of nine that were compared, 2 % longer in the ninth.
 
 `use` installs it for numba's target of the processor.  It takes parts of numba that are not public.
 """

@@ -31,8 +31,8 @@ _USUAL = {
     "Pa s": {"Pa s": "1", "mPa s": "0.001"},
     "N/m": {"N/m": "1", "kN/m": "1000"},
 }
-"""Units that most scenes are written in, by the unit wanted, as Pint has them: Pint takes longer to learn its units than
-a scene takes to be checked."""
+"""Units that most scenes are written in, by the unit wanted, as Pint has them: Pint takes longer to learn its units
+than a scene takes to be checked."""
 
 
 @lru_cache(maxsize=1)

@@ -1,4 +1,4 @@
-"""One process compiles a kernel, others wait for it; the second process is there when it is needed, and leaves nothing."""
+"""One process compiles a kernel, others wait for it; the second process is there when needed, and leaves nothing."""
 
 import subprocess
 import sys
