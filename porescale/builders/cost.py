@@ -24,11 +24,11 @@ CALLS, COUPLED_CALLS = 5e-6, 45e-6
 without them a run of a small scene would make every machine look slow."""
 START = 2.0
 """Seconds until a scene is read and all is imported."""
-BESIDES, BUILDING, RECORDING, FINISHING, COMPILING = "besides", "building", "recording", "finishing", "compiling"
+BUILDING, RECORDING, FINISHING = "building", "recording", "finishing"
+BESIDES, COMPILING = "besides", "compiling"
 PARTS = {BUILDING: (0.5, 0.0, 2e-3, 0.0), RECORDING: (0.2, 0.01, 1e-5, 1e-7), FINISHING: (3.0, 0.02, 1e-5, 1e-7)}
-"""Nominal seconds of what is no step: once, of each snapshot, and for each disc and each cell in it.  Building: a packing
-settles;  recording: rows, snapshots and checkpoints;  finishing: pictures, film and page.  Discs count once in the
-first."""
+"""Nominal seconds of what is no step: once, of each snapshot, and for each disc and each cell in it.  Building: a
+packing settles, once;  recording: rows, snapshots and checkpoints;  finishing: pictures, film and page."""
 KERNELS = 50.0
 """Nominal seconds of compiling all kernels of a scene."""
 SNAPSHOT = 1000.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -71,7 +71,7 @@ def command(package: Package) -> Callable[..., int]:
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
         with package.rehearsed(opened.scene):
-            with Watch(opened.name, 0.0, opened.scene.time.end, quiet=quiet):
+            with Watch(opened.name, 0.0, _end(opened.scene), quiet=quiet):
                 model = package.build(opened.scene)
             outcome = package.drive(
                 model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite
@@ -83,6 +83,11 @@ def command(package: Package) -> Callable[..., int]:
         return 0
 
     return run
+
+
+def _end(scene: Any) -> float:
+    """Time that a scene is to simulate, s; 0 where it does not say so."""
+    return float(getattr(getattr(scene, "time", None), "end", 0.0))
 
 
 def _require_free_choice(quality: str | None, resume: bool) -> None:
