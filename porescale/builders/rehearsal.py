@@ -27,10 +27,16 @@ def rehearsed(scene: Scene) -> AbstractContextManager[None]:
     from porescale.common.schema.own import on_card
     from porescale.common.schema.sections import scene_as_dict
 
-    if threads() < 2 or on_card(scene) or (scene.run and scene.run.device != "cpu") or memory(derive(scene)) > LARGEST:
+    if threads() < 2:
         return nullcontext()
-    folder = scene.source.folder
-    return ahead(__name__, lambda: {"scene": scene_as_dict(scene), "folder": str(folder or ""), "threads": threads()})
+
+    def given() -> dict[str, Any] | None:
+        """What the second process reads; None where it is not to be started."""
+        if on_card(scene) or (scene.run and scene.run.device != "cpu") or memory(derive(scene)) > LARGEST:
+            return None
+        return {"scene": scene_as_dict(scene), "folder": str(scene.source.folder or ""), "threads": threads()}
+
+    return ahead(__name__, given)
 
 
 def loosely(scene: Scene) -> Scene:

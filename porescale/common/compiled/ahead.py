@@ -29,7 +29,7 @@ PATIENCE = 10.0
 def ahead(module: str, given: Callable[[], Any]) -> Iterator[None]:
     """Within this, ``python -m module`` compiles what is not on disk, if anything is not.
 
-    given : what the process reads from its input, as JSON; called only then.
+    given : what the process reads from its input, as JSON, or None where it is not wanted; called only then.
     """
     started = list[subprocess.Popen[bytes]]()
     if sys.executable and cores() > 1:
@@ -49,7 +49,9 @@ def cores() -> int:
 
 
 def _start(module: str, given: Any) -> list[subprocess.Popen[bytes]]:
-    """The process; none where the system lets none be started."""
+    """The process; none where it is not wanted, or the system lets none be started."""
+    if given is None:
+        return []
     root = str(Path(__file__).resolve().parents[3])
     paths = os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH")]))
     quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}

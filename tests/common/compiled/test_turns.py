@@ -117,6 +117,14 @@ def test_none_is_started_on_one_core_or_where_all_is_kept(process, monkeypatch, 
     mine.end()
 
 
+def test_none_is_started_where_it_is_not_wanted(process):
+    mine, file = process
+    with ahead.ahead(CHILD, lambda: None):
+        mine.take("kernel", file.parent / "key")
+    mine.end()
+    assert not file.exists()
+
+
 def test_it_ends_when_the_first_is_killed(tmp_path):
     file, quiet = tmp_path / "number", subprocess.DEVNULL
     code = (
