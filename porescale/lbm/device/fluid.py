@@ -5,8 +5,9 @@ Everything that is not a population stays as it is: sides, plates, law, number o
 a device and goes on where one likes.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -27,6 +28,13 @@ CELLS_IN_BLOCK, LINKS_IN_BLOCK = 256, 64
 kernel_of: Any = cache(device_kernel)
 
 
+@dataclass(frozen=True)
+class DeviceSweep:
+    """A sweep over the cells that runs on the device: ``step`` (padded populations there, parity, law of collision)."""
+
+    step: Callable[[Any, int, Any], None]
+
+
 class OpenSide(NamedTuple):
     """Arrays of `OpenLinks` on the device, in the order of let_in_links.  even, odd : slots, and where they go."""
 
@@ -43,6 +51,8 @@ class DeviceFluid(Fluid):
 
     populations : the CPU's copy, brought up to date by whatever reads it here; ``fetch`` before reading it otherwise.
     """
+
+    on_device = True
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         require_device()
@@ -66,17 +76,20 @@ class DeviceFluid(Fluid):
             self._there.copy_to_host(self.padded)
             self._fetched = True
 
-    def advance(self, cells: Sweep = sweep, *extra: Any) -> None:
-        """One step of plain fluid, as ``Fluid.advance``; ValueError with another sweep."""
-        if cells is not sweep:
-            raise ValueError("a fluid on the device takes no other sweep than that of plain fluid")
+    def advance(self, cells: Sweep | DeviceSweep = sweep, *extra: Any) -> None:
+        """One step, as ``Fluid.advance``; ValueError with a sweep of the CPU other than that of plain fluid."""
+        if cells is not sweep and not isinstance(cells, DeviceSweep):
+            raise ValueError("a fluid on the device takes no other sweep of the CPU than that of plain fluid")
         if self._there is None:
             self._there = to_device(self.padded)
         self._fetched = False
         odd, law, flat = self.step % 2, self.law_of_sweep, self._there.reshape(self.padded.size)
         if odd:
             self._exchange(flat, +1.0)
-        launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, self.nx, odd, law)
+        if isinstance(cells, DeviceSweep):
+            cells.step(self._there, odd, law)
+        else:
+            launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, self.nx, odd, law)
         if odd:
             self._exchange(flat, -1.0)
         halo, inner = self._links
