@@ -20,9 +20,12 @@ if TYPE_CHECKING:
     from porescale.common.studies.runner import Campaign, Ended
 
 Vary = Annotated[list[str] | None, Parameter(name="--vary", help="section.key=a,b,c; repeatable: all combinations")]
-Jobs = Annotated[int, Parameter(help="runs at a time")]
+Jobs = Annotated[
+    int | None, Parameter(help="runs at a time; if not given one here, as many as it takes with a scheduler")
+]
 Scheduler = Annotated[
-    str | None, Parameter(help="address of a dask scheduler, tcp://host:8786, whose workers take the runs")
+    str | None,
+    Parameter(help="slurm, slurm:partition=long,time=2h,account=abc, or the address of a dask scheduler, tcp://…"),
 ]
 Again = Annotated[bool, Parameter(help="retry points that went unstable or failed")]
 
@@ -39,7 +42,7 @@ def command(package: Package) -> Callable[..., int]:
         quality: Quality = None,
         settings: Settings = None,
         out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _sweep if not given")] = None,
-        jobs: Jobs = 1,
+        jobs: Jobs = None,
         threads: Threads = 1,
         scheduler: Scheduler = None,
         again: Again = False,
@@ -57,7 +60,7 @@ def command(package: Package) -> Callable[..., int]:
         file, name = check_points(package, start, points, quality, settings or ())
         folder = output_folder(out, f"{name}_sweep")
         campaign = Campaign(package.module, file, folder, tuple(settings or ()), quality, threads or 1, again)
-        jobs = enlist(campaign, jobs, scheduler)
+        enlist(campaign, jobs, scheduler)
         varying = [word for text in vary or () for word in ("--vary", text)]
         words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying]
         command_line = shlex.join([*words, *laid_over(quality, settings)])
@@ -87,16 +90,14 @@ def laid_over(quality: str | None, settings: Sequence[str] | None) -> list[str]:
     return level + [word for text in settings or () for word in ("--set", text)]
 
 
-def enlist(campaign: Campaign, jobs: int, scheduler: str | None) -> int:
-    """How many points at a time; with a scheduler its workers take them."""
-    if jobs < 1:
+def enlist(campaign: Campaign, jobs: int | None, scheduler: str | None) -> None:
+    """Give the points to the scheduler that is named, this machine if none is; InputError where it cannot be had."""
+    if jobs is not None and jobs < 1:
         raise InputError(Fault("--jobs", jobs, "is out of range", "", ">= 1"))
-    if scheduler is None:
-        return jobs
-    from porescale.common.studies.cluster import connect
+    if scheduler is not None:
+        from porescale.common.studies.schedulers.law import scheduler_of
 
-    campaign.run, slots = connect(scheduler, campaign.module)
-    return slots
+        campaign.scheduler = scheduler_of(scheduler, campaign.threads)
 
 
 def conclude(ends: Sequence[Ended]) -> int:

@@ -19,7 +19,7 @@ def run_points(
     program: Program,
     campaign: Campaign,
     points: Sequence[Point],
-    jobs: int,
+    jobs: int | None,
     rows: Sequence[dict[str, Any]],
     command: str,
     say: Callable[[str], object],
