@@ -226,11 +226,15 @@ def _regime(density: float, gravity: float, derived: Derived, out: Report) -> No
 def _device(derived: Derived, out: Report) -> None:
     """What the GPU needs, and what there is."""
     from porescale.common.compiled.cuda import describe
+    from porescale.coupling.device import bodies
     from porescale.lbm.device.fluid import bytes_needed
 
     assert derived.cells
     name, memory_bytes = describe()
     need = bytes_needed(*derived.cells, derived.precision)
+    if derived.grain_count and derived.diameters and derived.scales:
+        across = math.ceil(derived.diameters[2] / derived.scales.spacing)
+        need += bodies.bytes_needed(*derived.cells, derived.precision, derived.grain_count, across)
     out.row("memory of the GPU", need / 2**20, "MiB", name)
     if memory_bytes and need > memory_bytes:
         out.warn(f"the GPU has {memory_bytes / 2**30:.1f} GiB: the run will not start there")

@@ -68,7 +68,7 @@ def weights_of_cell(e, weighting, solid):
 
 @inline
 def collide_saturated_cell(f, body, weights, laws):
-    """Collide a cell in which grains lie: its nine populations, what loads are made of, and |u - v| where rims are soft.
+    """Collide a cell in which grains lie: its populations, what loads are made of, and |u - v| where rims are soft.
 
     body: sum e of the solid fractions and of e times theta, velocity of the solid (x, y);  weights: of
     ``weights_of_cell``;  laws: of weight, solid and fluid operator, that of the cell.

@@ -9,6 +9,7 @@ part in the loads: they are stepped last, while loads come back and the CPU goes
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -86,11 +87,12 @@ class DeviceBodies:
         self._lines = empty_on_device((2, 3, max(self._lines_of_discs, 1)), np.float64)
         centre, velocity, spin, shift, theta, self._theta2, self._radius, self._places = self._up.there
         self._motion = Motion(centre, velocity, spin, shift, theta)
-        self._there = DevicePatches(
-            *(to_device(it) for it in patches), empty_on_device((len(patches.fraction) // BLOCK, 8), real), theta
-        )
+        blocks = empty_on_device((max(len(patches.fraction) // BLOCK, 1), 8), real)
+        corner, height, stride, start, fraction = (to_device(it) for it in patches)
+        self._there = DevicePatches(corner, height, stride, start, fraction, blocks, theta)
         gained = empty_on_device((4 if self.soft else 3, fluid.ny, fluid.nx), real)
-        self._cells = Tiles(*self._lists.there, empty_on_device((fluid.ny, 2), np.int32), gained)
+        begin, order, body = self._lists.there
+        self._cells = Tiles(begin, order, body, empty_on_device((fluid.ny, 2), np.int32), gained)
         self._row_load = to_device(np.zeros((count, int(rows.max(initial=0)), row_numbers)))
         self._pairs: tuple[Any, int, Any] | None = None
         self._law: Any = None
@@ -98,9 +100,7 @@ class DeviceBodies:
     def set_pairs(self, pairs: Integers) -> None:
         """Discs that overlap, (p, 2), see ``SaturatedCells``."""
         order, begin = grouped(pairs, self.discs)
-        heights = [
-            int(self.patches.height[np.unique(order[a:b])].sum()) for a, b in zip(begin[:-1], begin[1:], strict=True)
-        ]
+        heights = [int(self.patches.height[np.unique(order[a:b])].sum()) for a, b in pairwise(begin)]
         self._pairs = (to_device(begin), max(heights), to_device(order)) if heights else None
 
     def send(self, motion: Motion, radius: Reals, softness: SoftRim | None, *, moved: bool) -> None:
@@ -178,8 +178,10 @@ class DeviceBodies:
         self._back.fetch(numbers, self._copies)
 
     def find_areas(self, half_rate: float | None) -> None:
-        """Have the areas that a body force pushes summed as well, where bodies have moved;  half_rate: of ``held_area``,
-        None where the force acts everywhere."""
+        """Have the areas that a body force pushes summed as well, where bodies have moved.
+
+        half_rate: of ``held_area``, None where the force acts everywhere.
+        """
         self._areas = self._bodies if self.moved else 0
         if not self.moved:
             return
@@ -191,7 +193,7 @@ class DeviceBodies:
             self._run(cover.held_areas, self._bodies, *where, half_rate, self.laws[0], area)
 
     def receive(self) -> list[NDArray[np.float64]]:
-        """Load (n, 3), inside mass and inertia (n, 2), area (n,) and rim slip (discs, 2) of the step; waits for them."""
+        """Load (n, 3), inside mass and inertia (n, 2), area (n,) and rim slip (discs, 2) of the step; waits for it."""
         self._copies.synchronize()
         return self._back.here
 
@@ -203,6 +205,18 @@ class DeviceBodies:
         """Run a kernel that knows no law of the fluid with ``count`` threads."""
         laws = tuple(type(it) for it in self.laws[::-1])
         launch(kernel_of(function, laws, self._real), count, THREADS, *arguments)
+
+
+def bytes_needed(nx: int, ny: int, real_bytes: int, count: int, across: int) -> int:
+    """Device memory of ``count`` discs that are ``across`` cells wide at the most, beside that of the fluid.
+
+    Of every cell what loads are made of, of every tile its place in the lists, of every disc its patch with the motion
+    of its blocks, its grid lines, rows and loads, and its places in the lists of nine tiles.
+    """
+    wide, high = tiles_of(nx, ny)
+    stride = -(-(across + 3) // BLOCK) * BLOCK
+    patch = stride * (across + 2) * real_bytes * (1 + 8 / BLOCK) + 48 * stride + 40 * (across + 2)
+    return 3 * nx * ny * real_bytes + 8 * (wide * high + ny) + int(count * (patch + 8 * (SENT + 6 + 4) + 4 * 9))
 
 
 def _repeated(counts: Any) -> Any:

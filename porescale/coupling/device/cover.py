@@ -64,8 +64,8 @@ def cover_discs(radius: Any, patches: Any, owners: Any, lines: Any, cells: Any) 
 def subtract_pairs(groups: Any, pairs: Any, motion: Any, radius: Any, patches: Any) -> None:
     """``subtract_overlap`` of overlap.py: overwrites fractions;  threads: groups by ``rows``.
 
-    groups: (where the pairs of each group begin in ``pairs``, (g + 1,); rows that no group exceeds).  Discs of one group
-    overlap none of another; a thread takes a row of a group, in whose cells pairs come in order.
+    groups: (where the pairs of each group begin in ``pairs``, (g + 1,); rows that no group exceeds).  Discs of one
+    group overlap none of another; a thread takes a row of a group, in whose cells pairs come in order.
     """
     begin, rows = groups
     k = grid()

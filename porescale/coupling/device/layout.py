@@ -26,8 +26,8 @@ class DevicePatches(NamedTuple):
 
 
 class Owners(NamedTuple):
-    """Which body an entry belongs to: of a block of cells, of a row (with the first row of each body), and of a block of
-    lines of a disc (with the first line of each disc)."""
+    """Which body an entry belongs to: of a block of cells, of a row (with the first row of each body), and of a block
+    of lines of a disc (with the first line of each disc)."""
 
     block: Any
     row: Any

@@ -18,8 +18,8 @@ TILE_WIDTH, TILE_HEIGHT = 32, 8
 class TileLists(NamedTuple):
     """Lists of tiles, of integers of 32 bits.
 
-    start (tiles + 1,): the bodies of tile t are entries start[t] to start[t + 1] - 1 of ``body``;  order (tiles,): those
-    with bodies first, each by rising number.
+    start (tiles + 1,): the bodies of tile t are entries start[t] to start[t + 1] - 1 of ``body``;  order (tiles,):
+    those with bodies first, each by rising number.
     """
 
     start: NDArray[np.int32]
