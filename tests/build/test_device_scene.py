@@ -21,23 +21,23 @@ SCENE = {
     "fluid": FLUID,
 }
 ON_GPU = {**SCENE, "run": {"device": "gpu"}}
-BLOCK = [{"x": 0.002, "y": 0.002, "width": 0.002, "height": 0.002}]
+BLOCK = [{"lower": [0.002, 0.002], "upper": [0.004, 0.004]}]
 GRAINS = {
     "domain": {"width": 0.024, "height": 0.014, "left": "periodic", "right": "periodic"},
     "time": {"end": 0.02},
     "output": {"snapshot_interval": 0.01, "series_interval": 0.01},
-    "fluid": {**FLUID, "density": 1000},
+    "fluid": {**FLUID, "viscosity": 4e-4, "density": 1000},
     "grains": {
         "density": 2500,
         "hydraulic_radius_ratio": 0.9,
         "grain": [
             {"x": 0.0095, "y": 0.005, "diameter": 0.005, "velocity": [0.02, 0], "spin": 3},
-            {"x": 0.0145, "y": 0.006, "diameter": 0.0054},
+            {"x": 0.014601, "y": 0.006, "diameter": 0.0054},
             {"x": 0.0235, "y": 0.0105, "diameter": 0.005, "velocity": [0, -0.02]},
         ],
     },
     "disc": [{"x": 0.0185, "y": 0.0025, "diameter": 0.004}],
-    "contact": {"stiffness": 1e3, "tangential_stiffness": 2.5e2, "restitution": 0.6, "friction": 0.4},
+    "contact": {"stiffness": 1e5, "tangential_stiffness": 2.5e4, "restitution": 0.6, "friction": 0.4},
 }
 GRAINS_ON_GPU = {**GRAINS, "run": {"device": "gpu"}}
 
