@@ -13,13 +13,23 @@ from porescale.common.cli.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.studies.sweep import check_points, expected, run_points
+from porescale.common.studies.ensemble import Repeats, repeated
+from porescale.common.studies.sweep import check_points, columns_at_end, expected, run_points
 
 if TYPE_CHECKING:
     from porescale.common.studies.parameter_table import Point
     from porescale.common.studies.runner import Campaign, Ended
 
 Vary = Annotated[list[str] | None, Parameter(name="--vary", help="section.key=a,b,c; repeatable: all combinations")]
+Repeat = Annotated[
+    int | None, Parameter(help="how often each run is repeated, on other seeds: means with intervals in ensemble.csv")
+]
+OverKey = Annotated[
+    str | None,
+    Parameter(
+        help="what repeats differ in, in place of the scene's seeds: section.key, counted up, or section.key=a,b,c"
+    ),
+]
 Jobs = Annotated[
     int | None, Parameter(help="runs at a time; if not given one here, as many as it takes with a scheduler")
 ]
@@ -39,6 +49,8 @@ def command(package: Package) -> Callable[..., int]:
         /,
         *,
         vary: Vary = None,
+        repeat: Repeat = None,
+        over: OverKey = None,
         quality: Quality = None,
         settings: Settings = None,
         out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _sweep if not given")] = None,
@@ -47,36 +59,51 @@ def command(package: Package) -> Callable[..., int]:
         scheduler: Scheduler = None,
         again: Again = False,
     ) -> int:
-        """Run a scene with keys varied from a table, and compare the runs.
+        """Run a scene with keys varied from a table, or repeated on other seeds, and compare the runs.
 
         Every point has its run folder; sweep.csv, .md and .png compare the quantities of expected.toml beside the
-        scene, else how every column of the series ends.  A sweep that was stopped goes on when called again.
+        scene, else how every column of the series ends.  Of repeats ensemble.csv has means with intervals, judged by
+        expected.toml.  A sweep that was stopped goes on when called again.
         """
-        from porescale.common.studies import sweep_files
+        from porescale.common.studies import ensemble_files, sweep_files
+        from porescale.common.studies.ensemble import ensembles
         from porescale.common.studies.runner import Campaign
 
         start = require_scene(scene, package.name)
-        points = chosen_points(table, vary or ())
+        asked = Repeats(repeat, over)
+        points = chosen_points(table, vary or (), asked)
         file, name = check_points(package, start, points, quality, settings or ())
+        if asked:
+            points = repeated(package, start, points, asked, quality, settings or ())
+            check_points(package, start, points, quality, settings or ())
         folder = output_folder(out, f"{name}_sweep")
         campaign = Campaign(package.module, file, folder, tuple(settings or ()), quality, threads or 1, again)
         enlist(campaign, jobs, scheduler)
         varying = [word for text in vary or () for word in ("--vary", text)]
-        words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying]
+        words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying, *asked.options()]
         command_line = shlex.join([*words, *laid_over(quality, settings)])
-        ends = run_points(package, campaign, points, jobs, expected(file), command_line, say)
-        print(f"{folder / sweep_files.NAME}.csv, .md, .png")
-        return conclude(ends)
+        rows = expected(file)
+        ends = run_points(package, campaign, points, jobs, rows, command_line, say)
+        lines = sweep_files.ensemble_lines(
+            ensembles(points, ends), rows or columns_at_end(package, ends), package.table
+        )
+        for text in ensemble_files.printed(lines):
+            print(text)
+        print(f"{folder / sweep_files.NAME}.csv, .md, .png" + (f", {ensemble_files.NAME}.csv" if asked else ""))
+        return conclude(ends) or int(not settings and ensemble_files.failed(lines))
 
     return sweep
 
 
-def chosen_points(table: Path | None, vary: Sequence[str]) -> list[Point]:
-    """The points of a table, of options, or of both crossed; InputError if there is neither."""
-    from porescale.common.studies.parameter_table import crossed, read_points, varied
+def chosen_points(table: Path | None, vary: Sequence[str], asked: Repeats) -> list[Point]:
+    """The points of a table, of options, or of both crossed; InputError if there is neither, and no repeats."""
+    from porescale.common.studies.parameter_table import AS_IT_IS, Point, crossed, read_points, varied
 
     if table is None and not vary:
-        raise InputError(Fault("sweep", None, "varies nothing", repair="give a table, or --vary section.key=a,b,c"))
+        if asked:
+            return [Point(AS_IT_IS, ())]
+        repair = "give a table, --vary section.key=a,b,c, or --repeat N"
+        raise InputError(Fault("sweep", None, "varies nothing", repair=repair))
     options = varied(vary) if vary else []
     if table is None:
         return options

@@ -178,7 +178,7 @@ def test_the_table_holds_what_was_set_what_it_cost_and_what_came_out(tmp_path):
     ends = list(campaign(tmp_path, Machine({"rate=2": "unstable"})).all(points, 1, print))
     rows = [{"name": "half", "column": "left (m)", "at": {"first_below": 0.5}, "unit": "s"},
             {"name": "lost", "column": "nowhere", "at": "end"}]  # fmt: skip
-    sweep_files.write(tmp_path / "out", "toy sweep", ends, rows, TOY.table)
+    sweep_files.write(tmp_path / "out", "toy sweep", ends, rows, TOY.table, points)
     lines = list(csv.DictReader((tmp_path / "out" / "sweep.csv").open()))
     assert [line["decay.rate"] for line in lines] == ["1", "2"]
     assert float(lines[0]["half (s)"]) == pytest.approx(0.7)  # the first of the tenths beyond ln 2 = 0.693
