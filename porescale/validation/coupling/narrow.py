@@ -20,7 +20,7 @@ NARROW = Method(magic=MAGIC_NARROW_CHANNEL)
 
 def _together(rows: list[Measured]) -> Measured:
     """One row of several, with the largest of their errors."""
-    reference, found = (np.concatenate([np.atleast_1d(getattr(row, name)) for row in rows]) for name in SIDES)
+    reference, found = (np.concatenate([np.atleast_1d(getattr(row, name)) for row in rows]).tolist() for name in SIDES)
     return Measured(reference, found, max(row.error for row in rows))
 
 
