@@ -53,11 +53,16 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         if pictures and scene.output.report:
             write_report(finished, PROGRAM)
 
-    packing = scene.grains.packing if scene.grains else None
-    card = {**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}}
-    outcome = drive_scene(model, folder, scene, card=card, after=after, **options)
+    outcome = drive_scene(model, folder, scene, card={**card, "seeds": seeds(scene)}, after=after, **options)
     remember(model.derived, outcome.steps_per_second)
     return outcome
+
+
+def seeds(scene: Scene) -> dict[str, int]:
+    """Seeds of all that the scene draws at random, by key: of its packing, and of polygons placed at random."""
+    packing = scene.grains.packing if scene.grains else None
+    drawn = {f"polygon[{at}].seed": it.seed for at, it in enumerate(scene.polygon) if it.number is not None}
+    return ({"grains.packing.seed": packing.seed} if packing else {}) | drawn
 
 
 def show(folder: Path) -> list[Path]:
@@ -98,6 +103,7 @@ PROGRAM = Program(
     report=report,
     show=show,
     look=look,
+    seeds=seeds,
     measured=("probe", "flux", "line", "region"),
     measure=measure,
     widget=widget,

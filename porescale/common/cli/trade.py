@@ -33,7 +33,7 @@ def command(package: Package) -> Callable[..., int]:
         plan: Annotated[Path | None, Parameter(help="what is measured and varied; trade.toml beside the scene")] = None,
         settings: Settings = None,
         out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _trade if not given")] = None,
-        jobs: Jobs = 1,
+        jobs: Jobs = None,
         threads: Threads = 1,
         scheduler: Scheduler = None,
         again: Again = False,
@@ -64,8 +64,8 @@ def command(package: Package) -> Callable[..., int]:
         file, name = check_points(package, start, points, None, settings or ())
         folder = output_folder(out, f"{name}_trade")
         campaign = Campaign(package.module, file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
-        slots = enlist(campaign, jobs, scheduler)
-        ends = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
+        enlist(campaign, jobs, scheduler)
+        ends = {ended.point.name: ended for ended in campaign.all(points, jobs, say)}
         if code := conclude([ends[point.name] for point in truth]):
             say("the reference did not finish: nothing to hold the others against")
             return code

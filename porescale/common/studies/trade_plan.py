@@ -37,7 +37,7 @@ import pydantic
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
 from porescale.common.schema.sections import Refused, Section, quantity, validate
-from porescale.common.studies.parameter_table import Point, flat, literal, named, settings_of
+from porescale.common.studies.parameter_table import Point, flat, literal, named, repeats, settings_of
 from porescale.common.studies.quantities import wrong
 
 NAME = "trade.toml"
@@ -152,11 +152,7 @@ class Plan(Section):
         if self.over is None:
             return [point]
         key = self.over.key
-        texts = [literal(value, key) for value in self.over.values]
-        last = key.rpartition(".")[2]
-        return named(
-            [Point(f"{point.name},{last}={text}", (*point.settings, f"{key}={text}"), point.quality) for text in texts]
-        )
+        return named(repeats(point, [(f"{key}={literal(value, key)}",) for value in self.over.values]))
 
     def reference_point(self) -> Point | None:
         """The run finer than all."""
