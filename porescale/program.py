@@ -41,6 +41,7 @@ def build(scene: Scene) -> Simulation:
 def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], **options: Any) -> Outcome:
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.analysis.bed_permeability import write_permeability
+    from porescale.builders.checks.device import gpu_of
     from porescale.builders.cost import remember
     from porescale.common.api.run_scene import drive_scene
     from porescale.common.page.page import write_report
@@ -53,8 +54,11 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         if pictures and scene.output.report:
             write_report(finished, PROGRAM)
 
-    outcome = drive_scene(model, folder, scene, card={**card, "seeds": seeds(scene)}, after=after, **options)
-    remember(model.derived, outcome.steps_per_second)
+    gpu, driver = gpu_of(scene)
+    device = {"name": gpu, "driver": driver} if gpu else {"name": "cpu"}
+    card = {**card, "seeds": seeds(scene), "device": device}
+    outcome = drive_scene(model, folder, scene, card=card, after=after, **options)
+    remember(model.derived, outcome.steps_per_second, gpu)
     return outcome
 
 
