@@ -41,6 +41,7 @@ def build(scene: Scene) -> Simulation:
 def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], **options: Any) -> Outcome:
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.analysis.bed_permeability import write_permeability
+    from porescale.builders.checks.device import gpu_of
     from porescale.builders.cost import remember
     from porescale.common.api.run_scene import drive_scene
     from porescale.common.page.page import write_report
@@ -53,11 +54,19 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         if pictures and scene.output.report:
             write_report(finished, PROGRAM)
 
-    packing = scene.grains.packing if scene.grains else None
-    card = {**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}}
+    gpu, driver = gpu_of(scene)
+    device = {"name": gpu, "driver": driver} if gpu else {"name": "cpu"}
+    card = {**card, "seeds": seeds(scene), "device": device}
     outcome = drive_scene(model, folder, scene, card=card, after=after, **options)
-    remember(model.derived, outcome.steps_per_second)
+    remember(model.derived, outcome.steps_per_second, gpu)
     return outcome
+
+
+def seeds(scene: Scene) -> dict[str, int]:
+    """Seeds of all that the scene draws at random, by key: of its packing, and of polygons placed at random."""
+    packing = scene.grains.packing if scene.grains else None
+    drawn = {f"polygon[{at}].seed": it.seed for at, it in enumerate(scene.polygon) if it.number is not None}
+    return ({"grains.packing.seed": packing.seed} if packing else {}) | drawn
 
 
 def show(folder: Path) -> list[Path]:
@@ -98,6 +107,7 @@ PROGRAM = Program(
     report=report,
     show=show,
     look=look,
+    seeds=seeds,
     measured=("probe", "flux", "line", "region"),
     measure=measure,
     widget=widget,

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 from porescale.builders.build import build
+from porescale.builders.cost import expected_seconds, remember, seconds_on_gpu
+from porescale.builders.derive import derive
 from porescale.builders.report import report
 from porescale.builders.scene import Scene
 from porescale.common.compiled import cuda
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, Unstable
 
 FLUID = {"spacing": 1e-3, "relaxation_time": 0.7, "viscosity": 1e-5, "body_force": [0.01, 0]}
 SCENE = {
@@ -76,5 +78,92 @@ def test_a_scene_steps_on_the_device_to_the_same_bits():
     assert type(gpu.fluid) is not type(cpu.fluid)
 
 
-def test_check_says_what_the_gpu_needs():
-    assert "memory of the GPU" in str(report(Scene(**ON_GPU)))
+class Maker:
+    """A device that says how fast its memory is: 1 GHz, 512 bits, two transfers a clock."""
+
+    MEMORY_CLOCK_RATE, GLOBAL_MEMORY_BUS_WIDTH = 10**6, 512
+
+
+def test_check_says_what_the_gpu_needs_and_that_its_gain_is_unknown():
+    said = str(report(Scene(**ON_GPU)))
+    assert "memory of the GPU" in said
+    assert "time on the CPU" in said
+    assert "unknown" in said
+    assert "gain of the GPU" not in said
+    assert "GPU" not in str(report(Scene(**SCENE)))
+
+
+def test_check_estimates_the_time_from_the_makers_figures(monkeypatch):
+    monkeypatch.setattr(cuda.cuda(), "get_current_device", Maker, raising=False)
+    assert cuda.makers_bandwidth() == 2 * 1e9 * 512 / 8
+    derived = derive(Scene(**ON_GPU))
+    # 42 cells, nine float64 read and written, 1000 steps, 128 GB/s.
+    seconds = seconds_on_gpu(derived, 1000, cuda.makers_bandwidth())
+    assert seconds == pytest.approx(42 * 2 * 9 * 8 * 1000 / 128e9, rel=1e-14)
+    assert seconds != pytest.approx(seconds_on_gpu(derive(single()), 1000, 128e9), rel=0.4)  # half of it
+    said = str(report(Scene(**ON_GPU)))
+    assert "an estimate from the maker's figures, 128 GB/s" in said
+    assert "not measured" in said
+    assert "at most" in said
+
+
+def single():
+    """The scene in single precision."""
+    return Scene(**{**ON_GPU, "fluid": {**FLUID, "precision": "float32"}})
+
+
+def test_what_a_gpu_did_is_remembered_apart_from_the_cpu(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    scene, derived = Scene(**ON_GPU), derive(Scene(**ON_GPU))
+    guess = expected_seconds(derived, 1000)
+    remember(derived, 250.0, cuda.SIMULATOR)
+    assert expected_seconds(derived, 1000) == guess
+    assert expected_seconds(derived, 1000, cuda.SIMULATOR) == (pytest.approx(4.0, rel=1e-12), True)
+    assert "by the last runs of such scenes on it" in str(report(scene))
+    assert not expected_seconds(derived, 1000, "another GPU")[1]
+
+
+@pytest.mark.parametrize("fits", [0, 3, 7])
+def test_memory_that_does_not_suffice_fails_the_build(fits, monkeypatch):
+    """Whichever array it is that does not fit, the build says so, before there is a run."""
+    machine, left = cuda.cuda(), [fits]
+    send = machine.to_device
+
+    def sent(array):
+        left[0] -= 1
+        if left[0] < 0:
+            raise RuntimeError("Call to cuMemAlloc results in CUDA_ERROR_OUT_OF_MEMORY")
+        return send(array)
+
+    monkeypatch.setattr(machine, "to_device", sent)
+    with pytest.raises(InputError, match="does not hold") as refused:
+        build(Scene(**ON_GPU))
+    assert len(str(refused.value).splitlines()) == 1
+
+
+def test_a_run_that_was_built_asks_for_no_more_memory(monkeypatch):
+    """The check that must fail for an array that is made at the first step, row, snapshot or state."""
+    simulation = build(Scene(**ON_GPU))
+    monkeypatch.setattr(cuda.cuda(), "to_device", lambda _: pytest.fail("asked for more memory"))
+    state = simulation.state()
+    simulation.check()
+    simulation.series()
+    simulation.snapshot()
+    simulation.advance(1)
+    simulation.series()
+    simulation.restore(state)
+    simulation.advance(1)
+
+
+def test_a_diverging_fluid_is_found_without_its_populations(monkeypatch):
+    """The same cell, quantity and cause as on the CPU."""
+    said = []
+    for table in (SCENE, ON_GPU):
+        simulation = build(Scene(**table))
+        simulation.check()
+        simulation.fluid.set_flow(*simulation.fluid.fields()[1:], 1 + 0.6 * np.eye(6, 7))
+        monkeypatch.setattr(type(simulation.fluid), "state", lambda _: pytest.fail("populations were read"))
+        with pytest.raises(Unstable, match=r"relative density change = 0\.6 .*cell \(0, 0\)") as error:
+            simulation.check()
+        said.append(str(error.value))
+    assert said[0] == said[1]

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -22,6 +23,8 @@ from porescale.common.core.errors import Fault, InputError
 
 LEAST_CAPABILITY = (6, 0)
 """Oldest devices: the first with float64 atomics and pre-emption, and the oldest that current drivers serve."""
+
+SIMULATOR = "numba's simulator"
 
 
 @cache
@@ -59,9 +62,34 @@ def describe() -> tuple[str, int]:
     except InputError as error:
         return str(error), 0
     if simulated():
-        return "numba's simulator", 0
+        return SIMULATOR, 0
     name: Any = cuda().get_current_device().name
     return name.decode() if isinstance(name, bytes) else str(name), int(cuda().current_context().get_memory_info()[1])
+
+
+def driver() -> str:
+    """Version of CUDA that the driver of the device has, and of the driver where the system says it; "" without one."""
+    if simulated():
+        return ""
+    cuda_version = ".".join(str(it) for it in import_module("numba.cuda.cudadrv.driver").get_version())
+    own = Path("/sys/module/nvidia/version")
+    return f"CUDA {cuda_version}" + (f", driver {own.read_text().strip()}" if own.exists() else "")
+
+
+def makers_bandwidth() -> float | None:
+    """Bytes per second of the device's memory by its attributes, clock times width of the bus times two transfers a
+    clock; None where it does not say."""
+    try:
+        device = cuda().get_current_device()
+        found = 2e3 * float(device.MEMORY_CLOCK_RATE) * float(device.GLOBAL_MEMORY_BUS_WIDTH) / 8  # kHz, bits
+    except Exception:  # whatever a driver, or the simulator, raises for an attribute that it does not have
+        return None
+    return found if found > 0 else None
+
+
+def synchronize() -> None:
+    """Wait until the device has done all that it was given."""
+    cuda().synchronize()
 
 
 def to_device(array: Any) -> Any:
@@ -75,6 +103,7 @@ def to_device(array: Any) -> Any:
         raise InputError(Fault("device", "gpu", f"its memory does not hold {size} more")) from None
 
 
+@cache
 def device_kernel(function: FunctionType, law: type, real: type) -> Any:
     """Compile a function of arrays and numbers whose threads take their entry by ``grid``: see ``launch``.
 
