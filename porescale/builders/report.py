@@ -88,7 +88,7 @@ def _operators(fluid: Fluid, solid: bool, out: Report) -> None:
     """The laws that were chosen, with a word on each; ``solid`` : whether anything solid is in the fluid."""
     out.heading("Operators")
     out.row("collision", fluid.operator, "", OPERATORS[fluid.operator].purpose)
-    out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes")
+    out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes; 1/24: narrow gaps")
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
     if solid:
         out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator].purpose)

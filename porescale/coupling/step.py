@@ -94,7 +94,8 @@ class Coupled:
         self.lubrication: Lubrication | None = None
         if lubrication:
             if self.polygons:
-                raise InputError(Fault("lubrication", True, "has no films between polygons", repair="leave it out"))
+                problem = "has no films between polygons: what the lattice lacks was measured between round surfaces"
+                raise InputError(Fault("lubrication", True, problem, repair="leave it out"))
             self.lubrication = Lubrication(
                 grains, self.hydraulic_radius, viscosity=scales.density * scales.viscosity,
                 spacing=scales.spacing, cut=film_gap * scales.spacing, dt=scales.step / contact_steps,

@@ -13,10 +13,10 @@ from porescale.common.cli.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.studies.ensemble import Repeats, repeated
 from porescale.common.studies.sweep import check_points, columns_at_end, expected, run_points
 
 if TYPE_CHECKING:
+    from porescale.common.studies.ensemble import Repeats
     from porescale.common.studies.parameter_table import Point
     from porescale.common.studies.runner import Campaign, Ended
 
@@ -66,7 +66,7 @@ def command(package: Package) -> Callable[..., int]:
         expected.toml.  A sweep that was stopped goes on when called again.
         """
         from porescale.common.studies import ensemble_files, sweep_files
-        from porescale.common.studies.ensemble import ensembles
+        from porescale.common.studies.ensemble import Repeats, ensembles, repeated
         from porescale.common.studies.runner import Campaign
 
         start = require_scene(scene, package.name)

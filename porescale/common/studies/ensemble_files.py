@@ -6,12 +6,14 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from porescale.common.core.statistics import LEAST, LEVEL, bootstrap
+from porescale.common.core.statistics import LEAST, LEVEL, Sample, bootstrap
 from porescale.common.evidence import files
 from porescale.common.studies.ensemble import FAIL, OPEN, Ensemble, Judged, judge
 from porescale.common.studies.runner import Ended
 
 NAME = "ensemble"
+WORTH = ("mean", "standard deviation", "standard error", "t low", "t high", "bootstrap low", "bootstrap high")
+"""What a sample is worth: columns of tables."""
 Number = Callable[[Ended, Mapping[str, Any]], float]
 
 
@@ -43,20 +45,21 @@ def _cells(one: Ensemble, keys: Sequence[str], row: Mapping[str, Any], known: Ju
     made |= {key: one.of.value(key) for key in keys}
     made |= {"over": " ".join(one.over), "asked": one.asked, "finished": len(one.finished)}
     made |= {"quantity": str(row.get("name", "")), "unit": str(row.get("unit", ""))}
-    numbers: dict[str, float | None] = dict.fromkeys(
-        ("n", "mean", "standard deviation", "standard error", "t low", "t high", "bootstrap low", "bootstrap high")
-    )
+    numbers: dict[str, float | None] = dict.fromkeys(("n", *WORTH))
     judgement: dict[str, Any] = dict.fromkeys(("value", "tolerance", "inside", "verdict", "needed", "remark"), None)
     if known is not None:
-        it = known.sample
-        low, high = bootstrap(it.values)
-        given = (it.mean, it.deviation, it.error, it.mean - it.half, it.mean + it.half, low, high)
-        numbers = dict(zip(numbers, (len(it.values), *map(_finite, given)), strict=True))
+        numbers = dict(zip(numbers, (len(known.sample.values), *worth(known.sample)), strict=True))
         judgement["remark"] = remark(one, known)
         if known.verdict:
             judgement |= {"value": row["value"], "tolerance": row["tolerance"], "inside": known.inside}
             judgement |= {"verdict": known.verdict, "needed": None if known.needed is None else _finite(known.needed)}
     return made | numbers | judgement
+
+
+def worth(sample: Sample) -> list[float | None]:
+    """The numbers of WORTH, None for what there is not."""
+    ends = sample.mean - sample.half, sample.mean + sample.half, *bootstrap(sample.values)
+    return [_finite(it) for it in (sample.mean, sample.deviation, sample.error, *ends)]
 
 
 def _finite(value: float) -> float | None:

@@ -37,7 +37,7 @@ import pydantic
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
 from porescale.common.schema.sections import Refused, Section, quantity, validate
-from porescale.common.studies.parameter_table import Point, flat, literal, named, repeats, settings_of
+from porescale.common.studies.parameter_table import Point, flat, literal, named, settings_of
 from porescale.common.studies.quantities import wrong
 
 NAME = "trade.toml"
@@ -48,6 +48,10 @@ class Over(Section):
 
     key: str = pydantic.Field(description="section.key")
     values: tuple[int | float | str, ...] = pydantic.Field(min_length=1, description="its values, a run for each")
+
+    def option(self) -> str:
+        """As `--over` has it."""
+        return f"{self.key}={','.join(literal(value, self.key) for value in self.values)}"
 
 
 class Settings(Section):
@@ -146,13 +150,6 @@ class Plan(Section):
     def caveats(self) -> dict[tuple[str | None, tuple[str, ...]], tuple[str, float]]:
         """What is to be said of points, and of runs longer than what (s), by quality and settings."""
         return {self._over_base(it): (it.but, it.but_after) for knob in self.knob for it in knob.point if it.but}
-
-    def repeats(self, point: Point) -> list[Point]:
-        """One point for each value of ``over``, or the point itself."""
-        if self.over is None:
-            return [point]
-        key = self.over.key
-        return named(repeats(point, [(f"{key}={literal(value, key)}",) for value in self.over.values]))
 
     def reference_point(self) -> Point | None:
         """The run finer than all."""

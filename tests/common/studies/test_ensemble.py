@@ -5,6 +5,7 @@ import json
 import math
 from itertools import permutations
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from porescale.common.studies.ensemble import FAIL, OPEN, PASS, Repeats, ensembl
 from porescale.common.studies.ensemble_picture import band
 from porescale.common.studies.parameter_table import Point, read_points, varied
 from porescale.common.studies.runner import Campaign, Ended
+from porescale.common.studies.schedulers.local import Local
 from porescale.common.studies.sweep import run_points
 from tests.reference.toy_package import TOY
 
@@ -60,7 +62,8 @@ class Machine:
 
 
 def swept(scene: Path, points: list[Point], machine: Machine, out: str = "out", jobs: int = 1, **more) -> list[Ended]:
-    campaign = Campaign("toy", scene, scene.parent / out, run=machine, **more)
+    scheduler = Local(lambda task, cores: SimpleNamespace(run=lambda: machine(task.command()), stop=lambda: None))
+    campaign = Campaign("toy", scene, scene.parent / out, scheduler=scheduler, **more)
     return run_points(TOY, campaign, points, jobs, [AT_END], "toy sweep", lambda text: None)
 
 
