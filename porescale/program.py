@@ -54,6 +54,7 @@ def rehearsed(scene: Scene) -> AbstractContextManager[None]:
 def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], **options: Any) -> Outcome:
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.analysis.bed_permeability import write_permeability
+    from porescale.builders.checks.device import gpu_of
     from porescale.builders.cost import BUILDING, FINISHING, RECORDING, expected, remember, remember_run, snapshot_count
     from porescale.common.api.run_scene import drive_scene
     from porescale.common.page.page import write_report
@@ -66,17 +67,25 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         if pictures and scene.output.report:
             write_report(finished, PROGRAM)
 
-    packing = scene.grains.packing if scene.grains else None
-    card = {**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}}
     steps = max(1, round(scene.time.end / model.derived.model_step))
     count = snapshot_count(scene.time.end, scene.output.snapshot_interval)
     finish = expected(model.derived, steps, count).finishing
+    gpu, driver = gpu_of(scene)
+    device = {"name": gpu, "driver": driver} if gpu else {"name": "cpu"}
+    card = {**card, "seeds": seeds(scene), "device": device}
     outcome = drive_scene(model, folder, scene, card=card, after=after, finish=finish, **options)
-    remember(model.derived, outcome.steps_per_second)
-    if outcome.steps_per_second and not options.get("resume"):
+    remember(model.derived, outcome.steps_per_second, gpu)
+    if outcome.steps_per_second and not gpu and not options.get("resume"):
         taken = {BUILDING: model.built_in, RECORDING: outcome.recording, FINISHING: outcome.finishing}
         remember_run(model.derived, count, taken)
     return outcome
+
+
+def seeds(scene: Scene) -> dict[str, int]:
+    """Seeds of all that the scene draws at random, by key: of its packing, and of polygons placed at random."""
+    packing = scene.grains.packing if scene.grains else None
+    drawn = {f"polygon[{at}].seed": it.seed for at, it in enumerate(scene.polygon) if it.number is not None}
+    return ({"grains.packing.seed": packing.seed} if packing else {}) | drawn
 
 
 def show(folder: Path) -> list[Path]:
@@ -118,6 +127,7 @@ PROGRAM = Program(
     report=report,
     show=show,
     look=look,
+    seeds=seeds,
     measured=("probe", "flux", "line", "region"),
     measure=measure,
     widget=widget,

@@ -111,7 +111,15 @@ def ramp_of(section: Homogenise, packing: Packing) -> float:
 
 def side_of(section: Homogenise, packing: Packing) -> float:
     """Side (m) of the cell that holds the chosen number of grains."""
+    if packing.sizes:
+        return math.sqrt(sum(math.pi / 4.0 * d**2 * count for d, count in sizes_of(section, packing)) / SOLID)
     return packing.diameter * math.sqrt(section.grains * math.pi / 4.0 * (1.0 + packing.size_spread**2 / 3.0) / SOLID)
+
+
+def sizes_of(section: Homogenise, packing: Packing) -> list[list[float]]:
+    """The given sizes of a packing, [diameter m, number], as many in all as are chosen, one or more of each."""
+    every = sum(count for _, count in packing.sizes)
+    return [[d, float(max(1, round(count / every * section.grains)))] for d, count in packing.sizes]
 
 
 def specimen(scene: Scene) -> dict[str, Any]:
@@ -132,9 +140,10 @@ def specimen(scene: Scene) -> dict[str, Any]:
         "settling_rolling_friction": packing.settling_rolling_friction, "material": packing.material,
         "log_spread": packing.log_spread,
         "grading": [list(pair) for pair in packing.grading], "packing_fraction": SOLID,
+        "sizes": sizes_of(section, packing),
     }  # fmt: skip
-    if packing.grading:
-        del grains["diameter"]
+    for key in ("diameter", "packing_fraction") if packing.sizes else ("diameter",) if packing.grading else ():
+        del grains[key]
     whole = scene_as_dict(scene)
     table = {
         "title": f"Biaxial test: {scene.title}".rstrip(": "),

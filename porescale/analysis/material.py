@@ -15,9 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
-from porescale.common.core.statistics import half_width
+from porescale.common.core.statistics import Sample
 
 FORMAT = 1
 NAME = "material.toml"
@@ -36,32 +34,16 @@ OWN_LENGTHS = {"permeability": 0.0, "permeability over hydraulic diameter square
 
 
 @dataclass(frozen=True)
-class Known:
-    """A number as several packings have it: values, one for each, in ``unit``;  systematic : what no packing shows."""
+class Known(Sample):
+    """A number as several packings have it, values in ``unit``;  systematic : what no packing shows."""
 
-    values: tuple[float, ...]
     unit: str = ""
     systematic: float = 0.0
 
     @property
-    def mean(self) -> float:
-        """Mean of the values, in ``unit``."""
-        return float(np.mean(self.values))
-
-    @property
-    def deviation(self) -> float:
-        """Standard deviation of a single packing (n - 1), in ``unit``."""
-        return float(np.std(self.values, ddof=1))
-
-    @property
-    def error(self) -> float:
-        """Standard error of the mean."""
-        return self.deviation / math.sqrt(len(self.values))
-
-    @property
     def interval(self) -> float:
         """Half of the interval of the mean at 95 %; nan where packings are too few for one."""
-        return math.hypot(half_width(self.values), self.systematic)
+        return math.hypot(self.half, self.systematic)
 
     def table(self) -> dict[str, Any]:
         """The number as a table of the material file."""

@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from porescale.benchmarks.lbm import bytes_of, memory_of
-from porescale.benchmarks.psm import plain
+from porescale.benchmarks.lbm import bytes_of, memory_of, plain
 from porescale.builders.build import build
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError

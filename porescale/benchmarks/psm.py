@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from porescale.benchmarks.lbm import RELAXATION_TIME, bytes_of, memory_of, side_of, steps_of
+from porescale.benchmarks.lbm import RELAXATION_TIME, bytes_of, memory_of, plain, side_of, steps_of
 from porescale.common.evidence.benchmarks import PLAIN, Benchmarks, Dtype, Work
 from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.fluid import Fluid
@@ -40,19 +40,6 @@ def stirred(side: int, dtype: Dtype) -> Callable[[int], None]:
                 np.negative(velocity, out=velocity)
             np.add(centre, velocity, out=centre)
             wet.advance(fluid, centre, velocity, spin)
-
-    return run
-
-
-def plain(side: int, dtype: Dtype) -> Callable[[int], None]:
-    """Does so many steps of the same box without discs."""
-    fluid = Fluid(side, side, RELAXATION_TIME, dtype=dtype)
-    fluid.set_flow(0.01, 0.005)
-
-    def run(steps: int) -> None:
-        """So many steps of the fluid alone."""
-        for _ in range(steps):
-            fluid.advance()
 
     return run
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from porescale.builders.checks.device import device_of
 from porescale.builders.cost import require_memory
 from porescale.builders.derive import derive
 from porescale.builders.initial.fluid import coupled_of, fluid_of
@@ -39,7 +40,7 @@ def system_of(scene: Scene) -> System:
     if scene.grains or scene.disc or scene.rectangle or scene.ring:
         made.grains, made.recorded = grains_of(scene, derived, made.frames)
     if scene.fluid:
-        made.fluid = fluid_of(scene.fluid, scene.domain, derived, scene.run.device if scene.run else "cpu")
+        made.fluid = fluid_of(scene.fluid, scene.domain, derived, device_of(scene))
     if derived.scales:
         made.rectangles = on_the_lattice(scene.rectangle, derived.scales)
     if made.fluid and made.grains:

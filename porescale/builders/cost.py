@@ -68,9 +68,8 @@ def snapshot_count(end: float, interval: float) -> int:
 def step_seconds(derived: Derived) -> float:
     """Wall-clock seconds of a model step at the nominal rates."""
     cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
-    discs = derived.grain_count + SIDE * derived.corners
     calls = COUPLED_CALLS if cells and derived.grain_count else CALLS
-    return calls + cells / CELLS_PER_SECOND + discs * (derived.contact_steps or 0) / DISCS_PER_SECOND
+    return calls + cells / CELLS_PER_SECOND + contact_seconds(derived)
 
 
 @dataclass(frozen=True)
@@ -135,17 +134,31 @@ def remember_run(derived: Derived, snapshots: int, seconds: dict[str, float]) ->
     _write({"slowness": _slowness(), BESIDES: every})
 
 
-def expected_seconds(derived: Derived, steps: int) -> tuple[float, bool]:
-    """Wall-clock seconds of ``steps`` steps, and whether this machine has been measured."""
-    slowness = _slowness().get(_kind(derived), [])
+def contact_seconds(derived: Derived) -> float:
+    """Wall-clock seconds of the contacts in a model step at the nominal rate."""
+    discs = derived.grain_count + SIDE * derived.corners
+    return discs * (derived.contact_steps or 0) / DISCS_PER_SECOND
+
+
+def seconds_on_gpu(derived: Derived, steps: int, bandwidth: float) -> float:
+    """The least that ``steps`` steps take on a GPU whose memory moves so many bytes per second: nine populations
+    of every cell, read and written once, and the contacts, which the CPU does."""
+    nx, ny = derived.cells or (0, 0)
+    return steps * (18 * derived.precision * nx * ny / bandwidth + contact_seconds(derived))
+
+
+def expected_seconds(derived: Derived, steps: int, gpu: str = "") -> tuple[float, bool]:
+    """Wall-clock seconds of ``steps`` steps, and whether this machine has been measured;  gpu : name of the GPU
+    that is to step, if one is: before it was measured nothing is known of it."""
+    slowness = _slowness().get(_kind(derived, gpu), [])
     return steps * step_seconds(derived) * (median(slowness) if slowness else 1.0), bool(slowness)
 
 
-def remember(derived: Derived, steps_per_second: float) -> None:
-    """Note how this machine compares to the nominal rates with such scenes, for the next ``check``, if the cache can be
-    written: the last LAST runs of each kind."""
+def remember(derived: Derived, steps_per_second: float, gpu: str = "") -> None:
+    """Note how this machine, or its GPU, compares to the nominal rates with such scenes, for the next ``check``, if the
+    cache can be written: the last LAST runs of each kind."""
     if steps_per_second > 0:
-        known, kind = _slowness(), _kind(derived)
+        known, kind = _slowness(), _kind(derived, gpu)
         known[kind] = [*known.get(kind, []), 1 / (steps_per_second * step_seconds(derived))][-LAST:]
         _write({"slowness": known, BESIDES: _besides()})
 
@@ -169,11 +182,11 @@ def _file() -> Path:
     return cache_root() / "rate.json"
 
 
-def _kind(derived: Derived) -> str:
-    """Kind of scene whose steps cost alike: what is in it, how precise, and whether its size or its calls count."""
+def _kind(derived: Derived, gpu: str = "") -> str:
+    """Kind of scene whose steps cost alike: what is in it, how precise, if its size or its calls count; on what."""
     what = "fluid" * bool(derived.cells), "grains" * bool(derived.grain_count), "segments" * bool(derived.corners)
     small = step_seconds(derived) < 4.0 * (COUPLED_CALLS if all(what[:2]) else CALLS)
-    return " ".join(filter(None, (*what, f"{8 * derived.precision}" * bool(derived.cells), "small" * small)))
+    return " ".join(filter(None, (*what, f"{8 * derived.precision}" * bool(derived.cells), "small" * small, gpu)))
 
 
 def _write(table: dict[str, Any]) -> None:

@@ -47,7 +47,7 @@ def homogenise(
         str | None, Parameter(help="friction=2%: more packings until that interval (95 %) is as small")
     ] = None,
     out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _soil if not given")] = None,
-    jobs: Jobs = 1,
+    jobs: Jobs = None,
     threads: Threads = 1,
     scheduler: Scheduler = None,
     again: Again = False,
@@ -69,18 +69,18 @@ def homogenise(
     opened = open_scene(start, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)
     request = section_of(opened.scene)
-    if jobs < 1:
+    if jobs is not None and jobs < 1:
         raise InputError(Fault("--jobs", jobs, "is out of range", "", ">= 1"))
     aim = None if until is None else _aim(until)
     folder = output_folder(out, f"{opened.name}_soil")
     file = _specimen_file(folder, toml(test))
     campaign = Campaign("porescale", file, folder / "specimens", threads=threads or 1, again=again)
-    slots = enlist(campaign, jobs, scheduler)
+    enlist(campaign, jobs, scheduler)
     use_threads(threads)
     first, count = test["grains"]["packing"]["seed"], request.packings
     ends: list[Ended] = []
     while True:
-        ends += _specimens(campaign, range(first + len(ends), first + count), slots)
+        ends += _specimens(campaign, range(first + len(ends), first + count), jobs)
         if code := conclude(ends):
             say(f"no material file: finish these first, by the same command in {folder}")
             return code
@@ -101,12 +101,12 @@ def homogenise(
     return 0
 
 
-def _specimens(campaign: Campaign, seeds: range, slots: int) -> list[Ended]:
+def _specimens(campaign: Campaign, seeds: range, jobs: int | None) -> list[Ended]:
     """The tests of the packings of ``seeds``, in their order."""
     from porescale.common.studies.parameter_table import Point
 
     points = [Point(f"packing-{seed}", (f"grains.packing.seed={seed}",)) for seed in seeds]
-    found = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
+    found = {ended.point.name: ended for ended in campaign.all(points, jobs, say)}
     return [found[point.name] for point in points]
 
 

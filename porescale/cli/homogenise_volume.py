@@ -66,7 +66,7 @@ def volume(
     quality: Quality = None,
     settings: Settings = None,
     out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _volume if not given")] = None,
-    jobs: Jobs = 1,
+    jobs: Jobs = None,
     threads: Threads = 1,
     scheduler: Scheduler = None,
     again: Again = False,

@@ -28,6 +28,7 @@ from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.lattice import padded_populations
 from porescale.lbm.moments import moment_fields
 from porescale.lbm.stream import sweep
+from porescale.lbm.totals import START, Totals, add_blocks, blocks_of, force_rows, totals_of
 
 Sweep = Callable[..., None]
 
@@ -41,8 +42,10 @@ class Fluid:
     force_field (2, ny, nx): force density of every cell, None where it is uniform;
     populations (9, ny + 2, nx + 2): slots, see lattice.py, a part of ``padded``, the same with rows as long as they are
     in memory, and of ``flat``, in one dimension;  step: steps done;  plates: of no thickness, see
-    boundary/thin_plate.py.  A step allocates nothing.
+    boundary/thin_plate.py;  on_device: whether a graphics device steps it.  A step allocates nothing.
     """
+
+    on_device = False
 
     def __init__(
         self,
@@ -157,8 +160,8 @@ class Fluid:
 
         ``solid`` (ny, nx): the weight B of partially saturated cells, in which only (1 - B) of the body force acts.
         """
-        with self.readable():
-            rho, jx, jy = moment_fields(self.padded, self.nx, self.step % 2)
+        rho, jx, jy = self.moments()
+        rho += 1
         forces: Any = self.force if self.force_field is None else self.force_field
         for j, force in ((jx, forces[0]), (jy, forces[1])):
             if np.any(force):
@@ -166,15 +169,26 @@ class Fluid:
             j /= rho
         return rho, jx, jy
 
+    def moments(self) -> tuple[NDArray[np.floating], NDArray[np.floating], NDArray[np.floating]]:
+        """Density - 1 and first moments of every cell, each (ny, nx), lattice units; new arrays."""
+        with self.readable():
+            return moment_fields(self.padded, self.nx, self.step % 2, shifted=True)
+
+    def totals(self) -> Totals:
+        """Mass, momentum, energy, largest speed and extremes of density over all cells, see `Totals`."""
+        blocks = blocks_of(self.nx, self.ny)
+        force = force_rows(self.force, self.force_field, self.nx, self.populations.dtype)
+        with self.readable():
+            add_blocks(self.padded, self.nx, self.step % 2, force, START, blocks)
+        return totals_of(blocks)
+
     def mass_excess(self) -> float:
         """Sum over cells of density - 1, lattice units: a small number, so that a leak of 1e-12 shows."""
-        with self.readable():
-            return float(np.sum(moment_fields(self.padded, self.nx, self.step % 2, shifted=True)[0]))
+        return float(np.sum(self.moments()[0]))
 
     def momentum(self) -> tuple[float, float]:
         """Sum over cells of the first moments, lattice units."""
-        with self.readable():
-            _, jx, jy = moment_fields(self.padded, self.nx, self.step % 2)
+        _, jx, jy = self.moments()
         return float(np.sum(jx)), float(np.sum(jy))
 
     def state(self) -> dict[str, Any]:

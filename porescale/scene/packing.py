@@ -1,4 +1,4 @@
-"""[grains.packing]: grains placed at random, settled or pressed; sizes uniform, graded or lognormal."""
+"""[grains.packing]: grains placed at random, settled or pressed; sizes uniform, given, graded or lognormal."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -8,7 +8,7 @@ import pydantic
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.units import to_si
-from porescale.common.neighbors.grading import check_count, check_curve, graded_radii
+from porescale.common.neighbors.grading import check_count, check_curve, check_sizes, given_radii, graded_radii
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.scene.ranges import FRICTION, LENGTH
 
@@ -16,13 +16,14 @@ from porescale.scene.ranges import FRICTION, LENGTH
 class Packing(Section):
     """Grains placed at random without overlap, then settled dry under gravity until they fill a rectangle.
 
-    Their number is packing_fraction * width * height over the mean grain area; how high they stand in the end, friction
-    and seed decide.  With settle = false they stay where they were placed (packing_fraction at most 0.8); with compress
-    = true they are grown and pressed together in the whole box until it has that fraction, or void ratio, to round-off.
+    Their number is packing_fraction * width * height over the mean grain area, or that of sizes; how high they stand in
+    the end, friction and seed decide.  With settle = false they stay where they were placed (packing_fraction at most
+    0.8); with compress = true they are grown and pressed together in the whole box until it has that fraction, or void
+    ratio, to round-off.
     """
 
     follows: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("number", "count", "grains"), "packing_fraction (or void_ratio), width, height and diameter"
+        ("number", "count", "grains"), "packing_fraction (or void_ratio), width, height and diameter, or sizes gives it"
     )
 
     left: float = quantity("m", ge=0, le=1e3, help="left edge of the rectangle")
@@ -42,6 +43,9 @@ class Packing(Section):
     grading: tuple[tuple[float, float], ...] = quantity(
         "m", (), help="grading curve, [diameter, percent finer by mass] from 0 to 100, instead of diameter"
     )
+    sizes: tuple[tuple[float, float], ...] = quantity(
+        "m", (), help="[diameter, number of grains] of each size, instead of diameter and packing_fraction"
+    )
     log_spread: float | None = quantity(
         "", None, ge=0, le=0.46, help="deviation of the logarithm of lognormal diameters, instead of size_spread"
     )
@@ -52,11 +56,15 @@ class Packing(Section):
     @classmethod
     def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
         needed = [key for key in schema["required"] if key != "diameter"]
-        return {**schema, "required": needed, "anyOf": [{"required": ["diameter"]}, {"required": ["grading"]}]}
+        return {
+            **schema,
+            "required": needed,
+            "anyOf": [{"required": [key]} for key in ("diameter", "grading", "sizes")],
+        }
 
     def _faults(self) -> list[Fault]:
         try:
-            if self.log_spread is not None or (self.compress and not self.grading):
+            if self.log_spread is not None or (self.compress and not (self.grading or self.sizes)):
                 check_count(
                     self.packing_fraction * self.width * self.height / (np.pi / 4.0 * self.diameter**2), "diameter"
                 )
@@ -74,7 +82,15 @@ class Packing(Section):
     def _a_curve(cls, curve: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
         return require_curve(curve)
 
+    @pydantic.field_validator("sizes")
+    @classmethod
+    def _some_sizes(cls, sizes: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+        return require_sizes(sizes)
 
+
+LEAST, MOST = 0.7, 0.84
+"""Share of a rectangle that given sizes may cover: most of any packing, and least of one that is pressed, in which they
+grow or shrink until the pressure is there."""
 SAME = 1e-9
 """Relative difference within which two keys of the same quantity agree."""
 
@@ -97,6 +113,12 @@ def with_consequences(table: Any) -> Any:
     ratio = _number(made.get("void_ratio"))
     if ratio is not None and 0.0 < ratio < 1e3:
         follows("packing_fraction", 1.0 / (1.0 + ratio), "void_ratio")
+    if made.get("sizes"):
+        faults += _clash_with_sizes(made)
+        found = _of_sizes(made)
+        if found is not None and not faults:
+            follows("diameter", found[0], "sizes", "m")
+            follows("packing_fraction", found[1], "sizes")
     curve = made.get("grading")
     if curve:
         if made.get("log_spread") is not None:
@@ -121,6 +143,44 @@ def require_curve(curve: tuple[tuple[float, float], ...]) -> tuple[tuple[float, 
     if faults:
         raise Refused(*faults)
     return curve
+
+
+def require_sizes(sizes: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+    """Given sizes; raises Refused where they are none."""
+    faults = check_sizes(sizes, "") if sizes else []
+    if faults:
+        raise Refused(*faults)
+    return sizes
+
+
+def _clash_with_sizes(table: Mapping[str, Any]) -> list[Fault]:
+    """Faults of what given sizes leave no room for."""
+    return [
+        Fault(key, _number(table[key]), "sizes and numbers of grains follow from sizes", repair="leave one out")
+        for key in ("grading", "log_spread", "void_ratio") if table.get(key)
+    ]  # fmt: skip
+
+
+def _of_sizes(table: Mapping[str, Any]) -> tuple[float, float] | None:
+    """Mean diameter (m) of given sizes and the share of the rectangle of ``table`` that they cover; None where either
+    is at fault, which other checks report.  Raises Refused where they cover too much or too little of it."""
+    numbers = [_number(table.get(key), "m") for key in ("width", "height")]
+    try:
+        sizes = tuple((to_si(d, "m"), float(count)) for d, count in table["sizes"])
+        if None in numbers or check_sizes(sizes):
+            return None
+        if not all(LENGTH["ge"] <= number <= LENGTH["le"] for number in numbers if number is not None):
+            return None
+    except (TypeError, ValueError):
+        return None
+    radii = given_radii(sizes)
+    share = float(np.pi * np.sum(radii**2)) / float(np.prod(np.array(numbers, float)))
+    least = LEAST if table.get("pressure") is not None else 0.0
+    if not least <= share <= MOST:
+        allowed = f"{least:g} to {MOST:g}" if least else f"<= {MOST:g}"
+        repair = "change the numbers of grains, or the rectangle"
+        raise Refused(Fault("sizes", None, f"covers {share:.3g} of the rectangle", "", allowed, repair))
+    return 2.0 * float(radii.mean()), share
 
 
 def _mean_of(curve: Any, table: Mapping[str, Any]) -> float | None:

@@ -28,6 +28,16 @@ def test_means_and_slopes_of_a_straight_line_are_its_own():
     assert slope[inside] == pytest.approx(3.0, rel=1e-10)
 
 
+def test_a_specimen_of_given_sizes_has_their_shares():
+    packing = {"sizes": [["0.8 mm", 30], ["1.2 mm", 10]], "diameter": None, "packing_fraction": None, "left": 0,
+               "width": 0.008, "height": 0.006}  # fmt: skip
+    scene = dry(homogenise={"pressure": 100, "grains": 200}, **{f"grains__packing__{k}": v for k, v in packing.items()})
+    made = validate(Scene, specimen(scene)).grains.packing
+    assert made.sizes == ((0.0008, 150.0), (0.0012, 50.0))
+    assert made.packing_fraction == pytest.approx(0.83, rel=1e-12)  # SOLID, by the side of the cell
+    assert made.sizes != scene.grains.packing.sizes  # the twin: the numbers of the scene are those of its column
+
+
 def test_a_known_soil_is_found():
     assert VALIDATIONS["scene.biaxial_test_of_a_known_soil"].run().passed
 

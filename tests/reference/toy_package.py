@@ -20,8 +20,14 @@ class Decay(Section):
     start: float = quantity("m", 1.0)
 
 
+class Noise(Section):
+    seed: int = 1
+    size: float = quantity("", 0.1, ge=0, help="deviation of the rate")
+
+
 class ToyScene(Section):
     decay: Decay
+    noise: Noise | None = None
     duration: float = quantity("s", 1.0, gt=0)
     trouble: str = ""
 
@@ -79,9 +85,15 @@ def picture(folder: Path) -> list[Path]:
 
 def columns(folder: Path, name: str) -> dict:
     """What decayed, from the card: the toy writes no series."""
-    decay = json.loads((folder / "card.json").read_text())["scene"]["decay"]
+    scene = json.loads((folder / "card.json").read_text())["scene"]
+    decay, noise = scene["decay"], scene.get("noise")
+    rate = decay["rate"] * (1.0 + noise["size"] * np.random.default_rng(noise["seed"]).normal() if noise else 1.0)
     time = np.linspace(0.0, 1.0, 11)
-    return {"time (s)": time, "left (m)": decay["start"] * np.exp(-decay["rate"] * time)} if name == "series" else {}
+    return {"time (s)": time, "left (m)": decay["start"] * np.exp(-rate * time)} if name == "series" else {}
+
+
+def seeds(scene: ToyScene) -> dict[str, int]:
+    return {"noise.seed": scene.noise.seed} if scene.noise else {}
 
 
 def validations() -> Validations:
@@ -121,6 +133,7 @@ TOY = Package(
     show=picture,
     look=lambda run: Look(),
     table=columns,
+    seeds=seeds,
     validations=validations,
     benchmarks=benchmarks,
 )

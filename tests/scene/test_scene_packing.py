@@ -65,6 +65,64 @@ def test_lognormal_grains_and_void_ratio():
     assert np.pi * np.sum(radius**2) / (0.004 * 0.0055) == pytest.approx(0.5, abs=0.02)  # whole discs of 2.7 %
 
 
+SIZES = [["0.8 mm", 30], ["1.2 mm", 12]]
+
+
+@pytest.mark.parametrize("way", ["placed", "settled", "pressed"])
+def test_given_numbers_of_given_sizes_are_what_there_is(way):
+    if way == "pressed":
+        scene = pressed(sizes=[["0.8 mm", 80], ["1.2 mm", 33]], diameter=None, packing_fraction=None)
+    else:
+        gate = {"x": 0.008, "opens_at": 0.01, "lift_speed": 0.4} if way == "settled" else None
+        keys = {"sizes": SIZES, "diameter": None, "packing_fraction": None, "settle": way == "settled", "left": 0,
+                "width": 0.008, "height": 0.006}  # fmt: skip
+        scene = dry(gate=gate, **{f"grains__packing__{key}": value for key, value in keys.items()})
+    numbers = np.array([80, 33] if way == "pressed" else [30, 12])
+    packing, radius = scene.grains.packing, np.sort(grains_of(scene).discs.radius)
+    assert derive(scene).grain_count == len(radius) == numbers.sum()
+    # Two sizes and nothing between; a pressed bed grows all of them by one factor, a few per cent at most.
+    ratio = 0.0006 / 0.0004
+    np.testing.assert_allclose(radius / radius[0], np.repeat([1.0, ratio], numbers), rtol=1e-12)
+    assert radius[0] == pytest.approx(0.0004, rel=1e-12 if way != "pressed" else 0.05)
+    area = np.pi * float(numbers @ np.array([0.0004, 0.0006]) ** 2)
+    assert packing.packing_fraction == pytest.approx(area / (packing.width * packing.height), rel=1e-12)
+    assert packing.diameter == pytest.approx(2 * float(numbers @ [0.0004, 0.0006]) / numbers.sum(), rel=1e-12)
+    assert validate(Scene, scene_as_dict(scene)) == scene  # as a card holds it, with what follows
+    assert len(radius) != derive(packed(diameter=packing.diameter)).grain_count  # the twin: a number that follows
+
+
+@pytest.mark.parametrize(("keys", "said"), [
+    ({"diameter": 0.001}, r"packing.diameter = 0.001 m: follows from sizes: 0.000914286; leave diameter or sizes out"),
+    ({"packing_fraction": 0.5}, r"packing_fraction = 0.5: follows from sizes: 0.596"),
+    ({"void_ratio": 0.3}, r"packing.void_ratio = 0.3: sizes and numbers of grains follow from sizes; leave one out"),
+    ({"log_spread": 0.1}, r"packing.log_spread = 0.1: sizes and numbers of grains follow from sizes"),
+    ({"grading": CURVE}, r"packing.grading: sizes and numbers of grains follow from sizes"),
+    ({"sizes": [["1 mm", 2.5]]}, r"packing.sizes = .*: numbers of grains must be whole \(allowed: 1 to 300000"),
+    ({"sizes": [["1 mm", 0]]}, r"packing.sizes = .*: numbers of grains must be whole"),
+    ({"sizes": [["1 mm", 1e300]]}, r"packing.sizes = .*: numbers of grains must be whole"),
+    ({"sizes": [["1 mm", 9], ["11 mm", 9]]}, r"packing.sizes: spans diameters of 1 to 11 \(allowed: 1 to 10\)"),
+    ({"sizes": [[0, 9]]}, r"packing.sizes = .* is out of range"),
+    ({"sizes": [["1 mm", 900]]}, r"packing.sizes: covers 14.7 of the rectangle \(allowed: <= 0.84\); change"),
+])  # fmt: skip
+def test_given_sizes_that_cannot_be_are_refused(keys, said):
+    given = {
+        "sizes": SIZES,
+        "diameter": None,
+        "packing_fraction": None,
+        "left": 0,
+        "width": 0.008,
+        "height": 0.006,
+        **keys,
+    }
+    with pytest.raises(InputError, match=said):
+        derive(packed(**given))
+
+
+def test_given_sizes_that_pressure_would_change_are_refused():
+    with pytest.raises(InputError, match=r"sizes: covers 0.298 of the rectangle \(allowed: 0.7 to 0.84\)"):
+        pressed(sizes=SIZES, diameter=None, packing_fraction=None)
+
+
 def test_a_packing_is_compressed_to_its_pressure():
     scene = pressed(settling_friction=0.0)
     simulation: Any = build(scene)

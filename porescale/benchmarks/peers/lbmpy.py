@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from porescale.benchmarks.lbm import RELAXATION_TIME, side_of, steps_of
-from porescale.benchmarks.psm import plain
+from porescale.benchmarks.lbm import RELAXATION_TIME, plain, side_of, steps_of
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.extras import extra
 from porescale.common.evidence.benchmarks import Benchmarks, Dtype, Work

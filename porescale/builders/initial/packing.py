@@ -7,7 +7,7 @@ import numpy as np
 
 from porescale.common.core.errors import InputError, PorescaleWarning
 from porescale.common.core.types import Floats
-from porescale.common.neighbors.grading import graded_radii, lognormal_radii
+from porescale.common.neighbors.grading import given_radii, graded_radii, lognormal_radii
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
 from porescale.dem.grains import Grains
@@ -22,7 +22,10 @@ scatter by as much."""
 
 
 def radii_of(packing: Packing) -> Floats | None:
-    """Radii (n,) m of a packing with a grading, lognormal sizes or compression; None for the plain one, drawn later."""
+    """Radii (n,) m of a packing with given sizes, a grading, lognormal sizes or compression; None for the plain one,
+    drawn later."""
+    if packing.sizes:
+        return given_radii(packing.sizes)
     area = packing.packing_fraction * packing.width * packing.height
     if packing.grading:
         return graded_radii(packing.grading, area)

@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from porescale.builders.parts.flow_fields import fluid_row
 from porescale.builders.parts.fluid import FluidPart
-from porescale.builders.stepper import Fields
+from porescale.builders.stepper import Fields, Row
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import AnyArray
@@ -18,6 +19,7 @@ class CoupledPart(FluidPart):
         super().__init__(system)
         assert system.coupled
         self.coupled = system.coupled
+        self.mass = self.fluid.mass_excess()
 
     def advance(self) -> None:
         """Advance fluid and grains by one step of the fluid."""
@@ -26,6 +28,10 @@ class CoupledPart(FluidPart):
     def fields(self) -> Fields:
         """Velocity and pressure fields of the fluid between the grains."""
         return self.coupled.fields()
+
+    def flow_row(self) -> tuple[Row, float]:
+        """Columns of the fluid between the grains in the series, and the excess of the lattice's mass."""
+        return fluid_row(*self.fields(), self.scales), self.fluid.mass_excess()
 
     def check(self) -> None:
         """Raise Unstable where fluid or grains are not finite or out of bounds; of both, the fluid is named."""

@@ -10,6 +10,7 @@ from porescale.common.core.types import Reals
 from porescale.lbm.fields import stream_function
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
+from porescale.lbm.totals import Totals
 from porescale.scene.grains import Grains
 
 LAMBDA = "hydraulic radius ratio ()"
@@ -35,7 +36,21 @@ def total_pressure(gravity: tuple[float, float], scales: Scales, excess: Reals) 
 
 
 def fluid_row(excess: Reals, ux: Reals, uy: Reals, solid: Reals, scales: Scales) -> dict[str, float]:
-    """Columns of the series for the fluid between the grains; arrays (ny, nx), SI.
+    """`flow_columns` of the fluid between the grains; arrays (ny, nx), SI."""
+    square = ux**2 + uy**2
+    energy = 0.5 * float(np.sum((scales.density + excess) * square * (1 - solid))) * scales.spacing**2
+    extremes = float(excess.min()) / scales.density, float(excess.max()) / scales.density
+    return flow_columns(energy, float(np.sqrt(square.max())), *extremes, scales)
+
+
+def plain_row(totals: Totals, scales: Scales) -> dict[str, float]:
+    """`flow_columns` of a fluid with nothing in it."""
+    energy = totals.energy * scales.density * (scales.velocity * scales.spacing) ** 2
+    return flow_columns(energy, totals.fastest * scales.velocity, totals.thinnest, totals.densest, scales)
+
+
+def flow_columns(energy: float, speed: float, low: float, high: float, scales: Scales) -> dict[str, float]:
+    """Columns of the series for the fluid: energy J/m, speed m/s, extremes of the relative density less 1.
 
     kinetic energy of fluid (J/m) : of the fluid between the grains, per metre of depth
     largest fluid speed (m/s) : in any cell
@@ -43,14 +58,12 @@ def fluid_row(excess: Reals, ux: Reals, uy: Reals, solid: Reals, scales: Scales)
     lowest relative density () : in any cell, over the density at rest; below 1 where the fluid is thinned
     highest relative density () : in any cell, over the density at rest
     """
-    square = ux**2 + uy**2
-    energy = 0.5 * float(np.sum((scales.density + excess) * square * (1 - solid))) * scales.spacing**2
     return {
         "kinetic energy of fluid (J/m)": energy,
-        "largest fluid speed (m/s)": float(np.sqrt(square.max())),
-        "Mach number ()": float(np.sqrt(square.max())) / scales.sound_speed,
-        "lowest relative density ()": 1 + float(excess.min()) / scales.density,
-        "highest relative density ()": 1 + float(excess.max()) / scales.density,
+        "largest fluid speed (m/s)": speed,
+        "Mach number ()": speed / scales.sound_speed,
+        "lowest relative density ()": 1 + low,
+        "highest relative density ()": 1 + high,
     }
 
 

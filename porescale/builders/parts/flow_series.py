@@ -1,6 +1,6 @@
 """The fluid in series.csv."""
 
-from porescale.builders.parts.flow_fields import fluid_row, ratio_column
+from porescale.builders.parts.flow_fields import ratio_column
 from porescale.builders.parts.fluid import FluidPart
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
@@ -19,5 +19,5 @@ class FlowSeries(Part):
         fluid mass change () : since the start, over the mass of a box full of fluid
         """
         part, lattice = self.fluid, self.fluid.fluid
-        change = (lattice.mass_excess() - part.mass) / (lattice.nx * lattice.ny)
-        return {**fluid_row(*part.fields(), part.scales), **self.first, "fluid mass change ()": change}
+        columns, mass = part.flow_row()
+        return {**columns, **self.first, "fluid mass change ()": (mass - part.mass) / (lattice.nx * lattice.ny)}

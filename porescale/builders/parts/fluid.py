@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from porescale.builders.initial.fluid_options import weight_of
-from porescale.builders.parts.flow_fields import UNITS, derived_fields, total_pressure
-from porescale.builders.stepper import Fields, Stepper
+from porescale.builders.parts.flow_fields import UNITS, derived_fields, plain_row, total_pressure
+from porescale.builders.stepper import Fields, Row, Stepper
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import AnyArray
@@ -28,7 +28,7 @@ class FluidPart(Stepper):
             solid_operator=section.solid_operator, weighting=weight_of(section),
         )  # fmt: skip
         self.gravity, self.names = system.scene.gravity, system.scene.output.fields
-        self.mass = fluid.mass_excess()
+        self.mass = fluid.totals().mass
 
     def advance(self) -> None:
         """Advance the fluid by one lattice step."""
@@ -44,6 +44,11 @@ class FluidPart(Stepper):
         rho, ux, uy = self.fluid.fields()
         s = self.scales
         return (rho - 1) * s.density, ux * s.velocity, uy * s.velocity, np.zeros_like(rho)
+
+    def flow_row(self) -> tuple[Row, float]:
+        """Columns of the fluid in the series, and the excess of the lattice's mass."""
+        totals = self.fluid.totals()
+        return plain_row(totals, self.scales), totals.mass
 
     def check(self) -> None:
         """Raise Unstable where the fluid is not finite or out of bounds."""

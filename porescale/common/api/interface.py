@@ -99,9 +99,11 @@ class Interface(Generic[S, M]):
     def sweep(
         self,
         scene: S | str | Path,
-        vary: Vary,
+        vary: Vary | None = None,
         out: str | Path | None = None,
         *,
+        repeat: int | None = None,
+        over: str | None = None,
         quality: str | None = None,
         settings: Settings = (),
         jobs: int = 1,
@@ -112,18 +114,21 @@ class Interface(Generic[S, M]):
 
         scene : a scene, its path, or the name of a case;  vary : ``{"contact.friction": [0.2, 0.5]}``, every
         combination of all values; or a mapping key -> value for each run; or a CSV or TOML file;  out : folder, runs/,
-        the scene's name and _sweep if not given;  quality, settings : as of `load`, of all runs;  jobs : runs at a
-        time;  threads : of each;  again : retry what went unstable or failed.
+        the scene's name and _sweep if not given;  repeat : how often each is repeated, on other seeds;  over : what
+        repeats differ in, in place of the scene's seeds, "section.key" (counted up) or "section.key=a,b,c";  quality,
+        settings : as of `load`, of all runs;  jobs : runs at a time;  threads : of each;  again : retry what went
+        unstable or failed.
 
         A row for each run, in the order of ``vary``: its name, the values varied, how it ended, what it cost, and the
         quantities of expected.toml beside the scene, else how every column of its series ends.  The run folders,
         sweep.csv, .md and .png lie in the folder, ``table.attrs["folder"]``; a sweep that was stopped goes on when
-        called again.  Runs that do not finish give a PorescaleWarning.  Raises InputError with what is wrong with any
-        run before one starts.
+        called again.  Of repeats ``table.attrs["ensembles"]`` has the lines of ensemble.csv, means with intervals:
+        ``pandas.DataFrame`` makes a table of them.  Runs that do not finish give a PorescaleWarning.  Raises InputError
+        with what is wrong with any run before one starts.
         """
         from porescale.common.api.sweep import sweep
 
         return sweep(
             self._program, scene, vary, out,
-            quality=quality, settings=settings, jobs=jobs, threads=threads, again=again,
+            repeat=repeat, over=over, quality=quality, settings=settings, jobs=jobs, threads=threads, again=again,
         )  # fmt: skip

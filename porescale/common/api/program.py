@@ -59,6 +59,7 @@ class Program:
     warnings and all (it may raise InputError);
     show : makes pictures and a film in a run folder and gives their paths;  look : how they show a run;
     table : columns of a table of a run folder by its name, "series" for series.csv;
+    seeds : of all that a scene draws at random, by key, what repeats of a run are numbered by; none: nothing is drawn;
     measured : sections of a scene that can be measured on a finished run, by key;  measure : measures those of a scene
     (that of the run, with them in place of its own), the tables by name, each columns by name;
     widget : shows a run in notebooks;
@@ -76,6 +77,7 @@ class Program:
     show: Callable[[Path], Iterable[Path]]
     look: Callable[[Run], Look]
     table: Callable[[Path, str], Mapping[str, AnyArray]] = run_table
+    seeds: Callable[[Any], Mapping[str, int]] | None = None
     measured: Sequence[str] = ()
     measure: Callable[[Run, Any], Mapping[str, Mapping[str, Sequence[float]]]] | None = None
     widget: Callable[[Run], Any] | None = None

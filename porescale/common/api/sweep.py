@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import pandas
 
     from porescale.common.api.program import Program
+    from porescale.common.studies.ensemble import Repeats
     from porescale.common.studies.parameter_table import Point
 
 Vary = Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]] | str | Path
@@ -33,9 +34,11 @@ log = logging.getLogger(__name__)
 def sweep(
     program: Program,
     scene: Any,
-    vary: Vary,
+    vary: Vary | None,
     out: str | Path | None,
     *,
+    repeat: int | None = None,
+    over: str | None = None,
     quality: str | None = None,
     settings: Settings = (),
     jobs: int = 1,
@@ -43,17 +46,22 @@ def sweep(
     again: bool = False,
 ) -> pandas.DataFrame:
     """The runs of a sweep as a DataFrame; see ``sweep`` of the packages."""
+    from porescale.common.studies.ensemble import Repeats, ensembles, repeated
     from porescale.common.studies.runner import FINISHED, Campaign
     from porescale.common.studies.sweep import check_points, columns_at_end, expected, run_points
-    from porescale.common.studies.sweep_files import keys_of, lines_of
+    from porescale.common.studies.sweep_files import ensemble_lines, keys_of, lines_of
 
     pd = extra("pandas")
     for name, value in (("jobs", jobs), ("threads", threads)):
         if value < 1:
             raise InputError(Fault(name, value, "is out of range", "", ">= 1"))
-    points, texts = points_of(vary), setting_texts(settings)
+    asked = Repeats(repeat, over, ("repeat", "over", "vary"))
+    points, texts = points_of(vary, asked), setting_texts(settings)
     with _as_file(program, scene, quality) as start:
         file, name = check_points(program, start, points, quality, texts)
+        if asked:
+            points = repeated(program, start, points, asked, quality, texts)
+            check_points(program, start, points, quality, texts)
         folder = named_folder(out, f"{name}_sweep", IN_PYTHON.out)
         require_writable(folder, IN_PYTHON.out)
         given = scene if isinstance(scene, program.scene()) else None
@@ -68,22 +76,28 @@ def sweep(
         if ended.outcome != FINISHED:
             text = f"{ended.point.name}: {ended.outcome}: {ended.problem}"
             warnings.warn(text, PorescaleWarning, stacklevel=3)
-    made = pd.DataFrame(lines_of(ends, rows or columns_at_end(program, ends), program.table))
+    rows = rows or columns_at_end(program, ends)
+    made = pd.DataFrame(lines_of(ends, rows, program.table))
     for key in keys_of(ends):
         made[key] = [_value(text) for text in made[key]]
     made.attrs["folder"] = str(folder)
+    if asked:
+        lines = ensemble_lines(ensembles(points, ends), rows, program.table)
+        made.attrs["ensembles"] = [dict(line.cells) for line in lines]
     found: pandas.DataFrame = made
     return found
 
 
-def points_of(vary: Vary) -> list[Point]:
-    """The points of a sweep; InputError where nothing is varied."""
-    from porescale.common.studies.parameter_table import Point, combinations, named, read_points
+def points_of(vary: Vary | None, asked: Repeats | None = None) -> list[Point]:
+    """The points of a sweep; InputError where nothing is varied, and nothing repeated."""
+    from porescale.common.studies.parameter_table import AS_IT_IS, Point, combinations, named, read_points
 
     if isinstance(vary, str | Path):
         return read_points(Path(vary))
     if not vary:
-        repair = 'give {"contact.friction": [0.2, 0.5]}'
+        if asked:
+            return [Point(AS_IT_IS, ())]
+        repair = 'give {"contact.friction": [0.2, 0.5]}, or repeat=N'
         raise InputError(Fault("sweep", None, "varies nothing", repair=repair))
     if not isinstance(vary, Mapping):
         return named([Point("", setting_texts(each)) for each in vary])

@@ -25,6 +25,7 @@ def command(package: Package) -> Callable[..., int]:
         size: Annotated[int | None, Parameter(help="cells along a side, discs, …; each one's own if not given")] = None,
         threads: Threads = None,
         dtype: Annotated[Literal["float32", "float64"], Parameter(help="type of the fields")] = "float64",
+        device: Annotated[Literal["cpu", "gpu"], Parameter(help="gpu: those that there are for it")] = "cpu",
         against: Annotated[str | None, Parameter(help="program of others that does the same work in turns")] = None,
         list_: List = False,
         json: Json = False,
@@ -41,7 +42,7 @@ def command(package: Package) -> Callable[..., int]:
             print("\n".join(row.name for row in register))
             return 0
         rows = []
-        for row in register.run(names, size=size, threads=threads, dtype=dtype):
+        for row in register.run(names, size=size, threads=threads, dtype=dtype, device=device):
             rows.append(row)
             say(f"{row.name}: {row.rate:.4g} {row.unit}")
         if json:

@@ -13,16 +13,29 @@ from porescale.common.cli.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.studies.sweep import check_points, expected, run_points
+from porescale.common.studies.sweep import check_points, columns_at_end, expected, run_points
 
 if TYPE_CHECKING:
+    from porescale.common.studies.ensemble import Repeats
     from porescale.common.studies.parameter_table import Point
     from porescale.common.studies.runner import Campaign, Ended
 
 Vary = Annotated[list[str] | None, Parameter(name="--vary", help="section.key=a,b,c; repeatable: all combinations")]
-Jobs = Annotated[int, Parameter(help="runs at a time")]
+Repeat = Annotated[
+    int | None, Parameter(help="how often each run is repeated, on other seeds: means with intervals in ensemble.csv")
+]
+OverKey = Annotated[
+    str | None,
+    Parameter(
+        help="what repeats differ in, in place of the scene's seeds: section.key, counted up, or section.key=a,b,c"
+    ),
+]
+Jobs = Annotated[
+    int | None, Parameter(help="runs at a time; if not given one here, as many as it takes with a scheduler")
+]
 Scheduler = Annotated[
-    str | None, Parameter(help="address of a dask scheduler, tcp://host:8786, whose workers take the runs")
+    str | None,
+    Parameter(help="slurm, slurm:partition=long,time=2h,account=abc, or the address of a dask scheduler, tcp://…"),
 ]
 Again = Annotated[bool, Parameter(help="retry points that went unstable or failed")]
 
@@ -36,44 +49,61 @@ def command(package: Package) -> Callable[..., int]:
         /,
         *,
         vary: Vary = None,
+        repeat: Repeat = None,
+        over: OverKey = None,
         quality: Quality = None,
         settings: Settings = None,
         out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _sweep if not given")] = None,
-        jobs: Jobs = 1,
+        jobs: Jobs = None,
         threads: Threads = 1,
         scheduler: Scheduler = None,
         again: Again = False,
     ) -> int:
-        """Run a scene with keys varied from a table, and compare the runs.
+        """Run a scene with keys varied from a table, or repeated on other seeds, and compare the runs.
 
         Every point has its run folder; sweep.csv, .md and .png compare the quantities of expected.toml beside the
-        scene, else how every column of the series ends.  A sweep that was stopped goes on when called again.
+        scene, else how every column of the series ends.  Of repeats ensemble.csv has means with intervals, judged by
+        expected.toml.  A sweep that was stopped goes on when called again.
         """
-        from porescale.common.studies import sweep_files
+        from porescale.common.studies import ensemble_files, sweep_files
+        from porescale.common.studies.ensemble import Repeats, ensembles, repeated
         from porescale.common.studies.runner import Campaign
 
         start = require_scene(scene, package.name)
-        points = chosen_points(table, vary or ())
+        asked = Repeats(repeat, over)
+        points = chosen_points(table, vary or (), asked)
         file, name = check_points(package, start, points, quality, settings or ())
+        if asked:
+            points = repeated(package, start, points, asked, quality, settings or ())
+            check_points(package, start, points, quality, settings or ())
         folder = output_folder(out, f"{name}_sweep")
         campaign = Campaign(package.module, file, folder, tuple(settings or ()), quality, threads or 1, again)
-        jobs = enlist(campaign, jobs, scheduler)
+        enlist(campaign, jobs, scheduler)
         varying = [word for text in vary or () for word in ("--vary", text)]
-        words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying]
+        words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying, *asked.options()]
         command_line = shlex.join([*words, *laid_over(quality, settings)])
-        ends = run_points(package, campaign, points, jobs, expected(file), command_line, say)
-        print(f"{folder / sweep_files.NAME}.csv, .md, .png")
-        return conclude(ends)
+        rows = expected(file)
+        ends = run_points(package, campaign, points, jobs, rows, command_line, say)
+        lines = sweep_files.ensemble_lines(
+            ensembles(points, ends), rows or columns_at_end(package, ends), package.table
+        )
+        for text in ensemble_files.printed(lines):
+            print(text)
+        print(f"{folder / sweep_files.NAME}.csv, .md, .png" + (f", {ensemble_files.NAME}.csv" if asked else ""))
+        return conclude(ends) or int(not settings and ensemble_files.failed(lines))
 
     return sweep
 
 
-def chosen_points(table: Path | None, vary: Sequence[str]) -> list[Point]:
-    """The points of a table, of options, or of both crossed; InputError if there is neither."""
-    from porescale.common.studies.parameter_table import crossed, read_points, varied
+def chosen_points(table: Path | None, vary: Sequence[str], asked: Repeats) -> list[Point]:
+    """The points of a table, of options, or of both crossed; InputError if there is neither, and no repeats."""
+    from porescale.common.studies.parameter_table import AS_IT_IS, Point, crossed, read_points, varied
 
     if table is None and not vary:
-        raise InputError(Fault("sweep", None, "varies nothing", repair="give a table, or --vary section.key=a,b,c"))
+        if asked:
+            return [Point(AS_IT_IS, ())]
+        repair = "give a table, --vary section.key=a,b,c, or --repeat N"
+        raise InputError(Fault("sweep", None, "varies nothing", repair=repair))
     options = varied(vary) if vary else []
     if table is None:
         return options
@@ -87,16 +117,14 @@ def laid_over(quality: str | None, settings: Sequence[str] | None) -> list[str]:
     return level + [word for text in settings or () for word in ("--set", text)]
 
 
-def enlist(campaign: Campaign, jobs: int, scheduler: str | None) -> int:
-    """How many points at a time; with a scheduler its workers take them."""
-    if jobs < 1:
+def enlist(campaign: Campaign, jobs: int | None, scheduler: str | None) -> None:
+    """Give the points to the scheduler that is named, this machine if none is; InputError where it cannot be had."""
+    if jobs is not None and jobs < 1:
         raise InputError(Fault("--jobs", jobs, "is out of range", "", ">= 1"))
-    if scheduler is None:
-        return jobs
-    from porescale.common.studies.cluster import connect
+    if scheduler is not None:
+        from porescale.common.studies.schedulers.law import scheduler_of
 
-    campaign.run, slots = connect(scheduler, campaign.module)
-    return slots
+        campaign.scheduler = scheduler_of(scheduler, campaign.threads)
 
 
 def conclude(ends: Sequence[Ended]) -> int:

@@ -4,7 +4,7 @@ import shlex
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -14,6 +14,8 @@ from porescale.common.cli.package import Package
 from porescale.common.cli.sweep import (
     Again,
     Jobs,
+    OverKey,
+    Repeat,
     Scheduler,
     conclude,
     enlist,
@@ -21,6 +23,9 @@ from porescale.common.cli.sweep import (
 )
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.studies.sweep import check_points
+
+if TYPE_CHECKING:
+    from porescale.common.studies.parameter_table import Point
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -31,9 +36,11 @@ def command(package: Package) -> Callable[..., int]:
         /,
         *,
         plan: Annotated[Path | None, Parameter(help="what is measured and varied; trade.toml beside the scene")] = None,
+        repeat: Repeat = None,
+        over: OverKey = None,
         settings: Settings = None,
         out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _trade if not given")] = None,
-        jobs: Jobs = 1,
+        jobs: Jobs = None,
         threads: Threads = 1,
         scheduler: Scheduler = None,
         again: Again = False,
@@ -41,10 +48,12 @@ def command(package: Package) -> Callable[..., int]:
         """Measure error, core-seconds and memory of a scene over its knobs, and find the front.
 
         front.json, trade.csv, .md and .png; put front.json beside the scene, and `run --error 5%` or `--budget 3min`
-        pick from it.  A study that was stopped goes on when called again.
+        pick from it.  Every point is repeated as [over] of the plan says, or `--repeat`.  A study that was stopped goes
+        on when called again.
         """
         from porescale.common.schema.sections import open_scene, scene_as_dict
         from porescale.common.studies import trade_files
+        from porescale.common.studies.ensemble import Repeats, repeated
         from porescale.common.studies.runner import Campaign
         from porescale.common.studies.trade import Errors, front
         from porescale.common.studies.trade_plan import read_plan
@@ -58,14 +67,21 @@ def command(package: Package) -> Callable[..., int]:
             raise InputError(Fault("quantity.feature", unknown[0], "is not known", "", known))
         reference = planned.reference_point()
         variants = planned.variants()
-        truth = planned.repeats(reference) if reference else []
-        groups = [planned.repeats(point) for _, _, point in variants]
+        called = ("--repeat", "--over", "a point of the plan")
+        asked = Repeats(repeat, over, called) or Repeats(None, planned.over.option() if planned.over else None, called)
+
+        def repeats(point: "Point") -> "list[Point]":
+            """The runs of a point."""
+            return repeated(package, start, [point], asked, None, settings or ()) if asked else [point]
+
+        truth = repeats(reference) if reference else []
+        groups = [repeats(point) for _, _, point in variants]
         points = [*truth, *(point for group in groups for point in group)]
         file, name = check_points(package, start, points, None, settings or ())
         folder = output_folder(out, f"{name}_trade")
         campaign = Campaign(package.module, file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
-        slots = enlist(campaign, jobs, scheduler)
-        ends = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
+        enlist(campaign, jobs, scheduler)
+        ends = {ended.point.name: ended for ended in campaign.all(points, jobs, say)}
         if code := conclude([ends[point.name] for point in truth]):
             say("the reference did not finish: nothing to hold the others against")
             return code
@@ -77,8 +93,9 @@ def command(package: Package) -> Callable[..., int]:
         )  # fmt: skip
         use_threads(threads)
         words = [package.name, "study", "trade", str(scene), *(["--plan", str(plan)] if plan else [])]
+        words += Repeats(repeat, over).options()
         about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
-        about["settings"], about["over"] = list(settings or ()), planned.over.key if planned.over else None
+        about["settings"], about["over"] = list(settings or ()), key_of(groups[0][0])
         about["scene"] = scene_as_dict(open_scene(start, package.scene(), overrides=settings or ()).scene)
         about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in planned.quantity]
         about["references"] = errors.answers()
@@ -91,6 +108,11 @@ def command(package: Package) -> Callable[..., int]:
         return conclude(list(ends.values()))
 
     return trade
+
+
+def key_of(point: "Point") -> str | None:
+    """The key that the repeats of a point differ in; None for one that is no repeat."""
+    return point.over[0].partition("=")[0] if point.over else None
 
 
 def circumstances(package: Package, command: str, threads: int) -> dict[str, Any]:

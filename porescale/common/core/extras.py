@@ -15,6 +15,8 @@ EXTRAS = {
     "pystencils": "peers",
     "lammps": "peers",
     "openpiv": "piv",
+    "submitit": "cluster",
+    "distributed": "cluster",
 }
 """Libraries, and the extra of this package that brings them."""
 

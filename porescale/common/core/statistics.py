@@ -1,7 +1,10 @@
-"""What a mean of few values is worth: Student's interval, and how many of a correlated series are independent."""
+"""What a mean of few values is worth: Student's and the bootstrap's interval, and how many of a correlated series are
+independent."""
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,6 +14,8 @@ LEVEL = 0.95
 """Share of intervals that hold the true mean."""
 LEAST = 3
 """Values without which there is no interval: that of two is 12.7 standard errors wide each way, and says nothing."""
+RESAMPLES = 9999
+"""Of a bootstrap: its ends scatter by about a hundredth of the interval."""
 REACH = 5.0
 """Correlation times over which correlations are summed (Sokal 1997, Monte Carlo methods in statistical mechanics)."""
 
@@ -57,3 +62,51 @@ def needed(values: Sequence[float], width: float) -> float:
         if count > 1e6:
             return math.inf
     return count
+
+
+@lru_cache(maxsize=4096)
+def bootstrap(values: tuple[float, ...], level: float = LEVEL, resamples: int = RESAMPLES) -> tuple[float, float]:
+    """Ends of the bootstrap's interval of the mean of independent ``values``, in their unit; nan below LEAST values.
+
+    Bias-corrected and accelerated (Efron 1987, J. Am. Stat. Assoc. 82, 171), by a fixed generator from the values in
+    ascending order: the same ends for the same values, in whatever order they came.  It assumes no distribution, and is
+    too narrow where values are few: of 5, 10, 20 normal ones it holds the mean in 85, 90, 93 of 100 cases.
+    """
+    if len(values) < LEAST:
+        return math.nan, math.nan
+    drawn = np.sort(np.asarray(values, float))
+    if drawn[0] == drawn[-1]:
+        return float(drawn[0]), float(drawn[0])
+    from scipy import stats
+
+    found = stats.bootstrap(
+        (drawn,), np.mean, n_resamples=resamples, confidence_level=level, method="BCa", rng=np.random.default_rng(0)
+    ).confidence_interval
+    return float(found.low), float(found.high)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Independent values of one quantity, such as those of several packings.  values : one for each, in its unit."""
+
+    values: tuple[float, ...]
+
+    @property
+    def mean(self) -> float:
+        """Mean of the values; nan where there are none."""
+        return float(np.mean(self.values)) if self.values else math.nan
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation of a single value (n - 1); nan below two."""
+        return float(np.std(self.values, ddof=1)) if len(self.values) > 1 else math.nan
+
+    @property
+    def error(self) -> float:
+        """Standard error of the mean; nan below two values."""
+        return self.deviation / math.sqrt(len(self.values)) if self.values else math.nan
+
+    @property
+    def half(self) -> float:
+        """Half of Student's interval of the mean at LEVEL; nan below LEAST values."""
+        return half_width(self.values)

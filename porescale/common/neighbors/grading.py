@@ -1,4 +1,5 @@
-"""Sizes of discs: grading curves matched to within one disc, and lognormal sizes.  Pure geometry.
+"""Sizes of discs: given numbers of given diameters, grading curves matched to within one disc, lognormal sizes.
+Pure geometry.
 
 Mass is area here: discs of one density.
 """
@@ -12,6 +13,9 @@ from porescale.common.core.types import Floats
 
 Curve = Sequence[tuple[float, float]]
 """A grading curve: (diameter in m, percent finer by mass), both ascending, 0 to 100 %; straight over log diameter."""
+
+Sizes = Sequence[tuple[float, float]]
+"""Given sizes: (diameter in m, number of discs)."""
 
 WIDEST = 10.0
 """Largest over smallest diameter: the pair search has one cutoff for all, so that wider mixtures cost too much."""
@@ -42,6 +46,34 @@ def check_curve(curve: Curve, key: str = "grading") -> list[Fault]:
         problem = "percent finer must ascend from 0 to 100"
         faults.append(Fault(key, str(finer.tolist()), problem, "%", "0 to 100", form))
     return faults
+
+
+def check_sizes(sizes: Sizes, key: str = "sizes") -> list[Fault]:
+    """Faults of given sizes; an empty list where they are valid."""
+    form = "pairs (diameter, number of grains)"
+    diameter, number = np.array(sizes, dtype=np.float64).reshape(-1, 2).T
+    if not len(diameter):
+        return [Fault(key, 0, "has no pair", "", ">= 1", form)]
+    faults, least, largest = [], float(diameter.min()), float(diameter.max())
+    if least < SMALLEST or largest > LARGEST:
+        allowed, repair = f"{SMALLEST:g} to {LARGEST:g}", "give diameters in metres"
+        faults.append(Fault(key, str(diameter.tolist()), "is out of range", "m", allowed, repair))
+    elif largest > WIDEST * least * (1.0 + 1e-9):
+        problem = f"spans diameters of 1 to {largest / least:.3g}"
+        faults.append(Fault(key, None, problem, "", f"1 to {WIDEST:g}", "leave out the smallest grains"))
+    if not (np.all(number >= 1.0) and np.all(number == np.floor(number)) and number.sum() <= MOST_GRADED):
+        problem, allowed = "numbers of grains must be whole", f"1 to {MOST_GRADED} in all"
+        faults.append(Fault(key, str(number.tolist()), problem, "", allowed, form))
+    return faults
+
+
+def given_radii(sizes: Sizes) -> Floats:
+    """Radii (n,) m of so many discs of each diameter, in the order given.  Raises InputError for none."""
+    faults = check_sizes(sizes)
+    if faults:
+        raise InputError(faults)
+    diameter, number = np.array(sizes, dtype=np.float64).T
+    return np.repeat(0.5 * diameter, number.astype(np.int64))
 
 
 def graded_radii(curve: Curve, area: float) -> Floats:

@@ -22,6 +22,9 @@ PATIENCE = 2.0
 """Seconds after which a person wonders what happens."""
 LINE_EVERY = 10.0
 STARTING = "starting"
+HALT, IDLE = 2.0, 0.01
+"""Seconds by which a wait must last too long to count as time in which the process was stopped (SIGSTOP, Ctrl-Z), and
+the share of them in which it must have had no more than the processor: a busy machine gives more."""
 
 
 class Watch:
@@ -41,6 +44,7 @@ class Watch:
         self.began = clock.perf_counter()
         self.running_since: float | None = None
         self.finishing_since: float | None = None
+        self.stopped = 0.0
         self.last_line = self.began
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
@@ -64,7 +68,7 @@ class Watch:
         self.step, self.time, self.updates = step, time, self.updates + 1
         if self.updates in (1, UNCOUNTED):  # until then kernels are compiled, or read from disk
             self.running_since = clock.perf_counter()
-            self.start = time
+            self.start, self.stopped = time, 0.0
             self.phase = "running"
 
     def enter(self, phase: str) -> None:
@@ -86,13 +90,13 @@ class Watch:
         """Seconds left, all that follows the steps included; None while unknown.
 
         Steps are expected to go on at their mean speed, rows, snapshots and checkpoints included, since kernels were
-        compiled.
+        compiled; time in which the process was stopped does not count.
         """
         if self.finishing_since is not None:
             return max(0.0, self.finish - (clock.perf_counter() - self.finishing_since)) if self.finish else None
         if self.running_since is None or self.time <= self.start:
             return None
-        spent = clock.perf_counter() - self.running_since
+        spent = clock.perf_counter() - self.running_since - self.stopped
         return spent * (self.end - self.time) / (self.time - self.start) + self.finish
 
     def line(self) -> str:
@@ -103,9 +107,24 @@ class Watch:
         left = self.left()
         return text if left is None else f"{text}, {duration(left)} left"
 
+    def _wait(self, seconds: float) -> bool:
+        """Wait so long, or until the end, and see whether the process was stopped meanwhile; whether it is the end."""
+        until = clock.perf_counter() + seconds
+        while True:
+            began, busy = clock.perf_counter(), clock.process_time()
+            wait = min(max(until - began, 0.0), 0.5)
+            if self._stop.wait(wait):
+                return True
+            now = clock.perf_counter()
+            over = now - began - wait
+            if over > HALT and clock.process_time() - busy < IDLE * over:
+                self.stopped += over
+            if now >= until:
+                return False
+
     def _attend(self) -> None:
         """Runs beside the model: wakes the bar after a while, then keeps it or the lines going."""
-        if self._stop.wait(PATIENCE):
+        if self._wait(PATIENCE):
             return
         if self.console.is_jupyter:
             self._write_over()
@@ -113,7 +132,7 @@ class Watch:
         if self.console.is_terminal:
             self._show_bar()
             return
-        while not self._stop.wait(LINE_EVERY if self.last_line > self.began else LINE_EVERY - PATIENCE):
+        while not self._wait(LINE_EVERY if self.last_line > self.began else LINE_EVERY - PATIENCE):
             self.last_line = clock.perf_counter()
             self.say(self.line())
 
@@ -121,7 +140,7 @@ class Watch:
         """One line of a notebook's output, written over until the end; then it says how far the run came."""
         longest, ended = 0, False
         while not ended:
-            ended = self._stop.wait(0.5)
+            ended = self._wait(0.5)
             text = self.line()
             longest = max(longest, len(text))
             print(f"\r{text:<{longest}}", end="\n" if ended else "", flush=True)
@@ -139,7 +158,7 @@ class Watch:
         with Progress(*columns, console=self.console, transient=True) as bar:
             task = bar.add_task(self.title, start=False, total=None, where="", left="")
             started = False
-            while not self._stop.wait(0.2):
+            while not self._wait(0.2):
                 if self.running_since is not None and not started:
                     bar.start_task(task)
                     started = True

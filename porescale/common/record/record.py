@@ -108,7 +108,9 @@ class Record:
         snapshots.trim(folder, model.step - 1 if extra else model.step)
         snapshots.assemble(folder)
         card["seconds"] = saved.reached.seconds
-        card["resumed"] = [*card.get("resumed", []), {"at": cards.now(), "step": model.step, "time": model.time, **now}]
+        reached = {"at": cards.now(), "step": model.step, "time": model.time, **now}
+        on = {"device": card["device"]} if "device" in card else {}
+        card["resumed"] = [*card.get("resumed", []), {**reached, **on}]
         if changed:
             what = ", ".join(changed)
             text = f"resumed with other {what}: not promised to go on bit for bit"

@@ -9,6 +9,8 @@ TOML     ``[[point]]`` tables with keys as in CSV, dotted or nested; ``[vary]`` 
 options  ``--vary contact.friction=0.2,0.5``, repeatable: every combination.
 """
 
+from __future__ import annotations
+
 import csv
 import itertools
 import json
@@ -22,17 +24,26 @@ from typing import Any
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
 
+AS_IT_IS = "as-it-is"
+"""Name of the point that sets nothing."""
 LONGEST = 80
 MOST = 100_000
 
 
 @dataclass(frozen=True)
 class Point:
-    """One run.  name : that of its folder, unique;  settings : ``section.key=value``;  quality : level or None."""
+    """One run.  name : that of its folder, unique;  settings : ``section.key=value``;  quality : level or None;
+    of : the point that it repeats, None for one that stands alone."""
 
     name: str
     settings: tuple[str, ...]
     quality: str | None = None
+    of: Point | None = None
+
+    @property
+    def over(self) -> tuple[str, ...]:
+        """Settings that tell it from other repeats of the same point."""
+        return self.settings[len(self.of.settings) :] if self.of else ()
 
     def value(self, key: str) -> str:
         """What it sets ``key`` to; "" where it leaves the scene's value."""
@@ -59,7 +70,7 @@ def varied(options: Sequence[str]) -> list[Point]:
     lists = []
     for option in options:
         key, equals, values = option.partition("=")
-        parts = _split(values)
+        parts = split(values)
         if not equals or not key.strip() or not all(parts):
             repair = "write it as --vary contact.friction=0.2,0.5"
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
@@ -71,6 +82,17 @@ def crossed(points: Sequence[Point], others: Sequence[Point]) -> list[Point]:
     """Every point of one list with every one of the other laid over it."""
     pairs = itertools.product(points, others)
     return named([Point("", a.settings + b.settings, b.quality or a.quality) for a, b in pairs])
+
+
+def repeats(point: Point, choices: Iterable[tuple[str, ...]]) -> list[Point]:
+    """Repeats of a point, one for each choice of settings over its own; names end with what the first of them sets."""
+    made = []
+    for over in choices:
+        key, _, value = over[0].partition("=")
+        own = f"{point.name}," if point.settings or point.quality or point.name != AS_IT_IS else ""
+        name = f"{own}{key.rpartition('.')[2]}={value}"
+        made.append(Point(name, (*point.settings, *over), point.quality, point))
+    return made
 
 
 def named(points: Iterable[Point]) -> list[Point]:
@@ -158,7 +180,7 @@ def combinations(lists: Sequence[Sequence[str]]) -> list[Point]:
     return [Point("", settings) for settings in itertools.product(*lists)]
 
 
-def _split(text: str) -> list[str]:
+def split(text: str) -> list[str]:
     """``text`` at commas outside brackets and quotes."""
     parts, depth, quote, start = [], 0, "", 0
     for at, sign in enumerate(text):
@@ -182,7 +204,7 @@ def _made_name(point: Point) -> str:
     for setting in point.settings:
         key, _, value = setting.partition("=")
         parts.append(f"{key.rpartition('.')[2]}={value}")
-    return ",".join(part for part in parts if part) or "as-it-is"
+    return ",".join(part for part in parts if part) or AS_IT_IS
 
 
 def _slug(name: str) -> str:

@@ -5,31 +5,26 @@ checkpoint.  A point that went unstable keeps that verdict until it is requested
 """
 
 import signal
-import subprocess
-import sys
 import threading
-import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from porescale.common.core.atomic import owned
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
 from porescale.common.studies.parameter_table import Point
+from porescale.common.studies.schedulers import progress
+from porescale.common.studies.schedulers.law import Scheduler
+from porescale.common.studies.schedulers.local import Local
+from porescale.common.studies.schedulers.task import INTERRUPTED, Done, Task
 
 FINISHED, UNSTABLE, REFUSED = "finished", "unstable", "refused"
-CODES = {0: FINISHED, 2: REFUSED, 3: UNSTABLE, 130: "interrupted"}
+CODES = {0: FINISHED, 2: REFUSED, 3: UNSTABLE, INTERRUPTED: "interrupted"}
 """How a point's process ended, by exit code; anything else failed."""
-
-OWN_GROUP = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
-STOP: int = getattr(signal, "CTRL_BREAK_EVENT", signal.SIGINT)
-"""What asks a process to save its state and end; Windows sends such things to groups of processes alone."""
-Run = Callable[[list[str]], tuple[int, str]]
-"""Runs the words of a command line; gives exit code and what it said on stderr."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +48,8 @@ class Campaign:
     """What all points share.
 
     module : of the package, for ``python -m``;  scene : file;  folder : where run folders go;  settings, quality :
-    what lies below those of the points;  threads : of each run;  again : retry what went unstable or failed;  run :
-    None for processes on this machine.
+    what lies below those of the points;  threads : of each run;  again : retry what went unstable, and begin anew with
+    what failed;  scheduler : what runs them.
     """
 
     module: str
@@ -64,10 +59,7 @@ class Campaign:
     quality: str | None = None
     threads: int = 1
     again: bool = False
-    run: Run | None = None
-    _alive: set[subprocess.Popen[str]] = field(default_factory=set)
-    _lock: threading.Lock = field(default_factory=threading.Lock)
-    _stopped: bool = False
+    scheduler: Scheduler = field(default_factory=Local)
 
     def words(self, point: Point) -> list[str]:
         """The command line of a point, without `--resume`."""
@@ -96,76 +88,51 @@ class Campaign:
             return Ended(point, folder, outcome, card, str(card.get("problem") or ""))
         return None
 
-    def one(self, point: Point) -> Ended:
-        """Run a point, or go on with it."""
-        folder, words = self.place(point), self.words(point)
-        begun = (folder / CARD).exists()
-        again = begun and read_card(folder).get("outcome") in (UNSTABLE, "failed")
-        words += ["--overwrite"] if again else ["--resume"] if begun else []
-        code, said = (self.run or self._process)(words)
-        card = read_card(folder) if (folder / CARD).exists() else {}
-        lines = [line for line in said.splitlines() if line.strip() and not line.startswith("warning:")]
-        return Ended(point, folder, CODES.get(code, "failed"), card, "" if code == 0 or not lines else lines[-1])
+    def task(self, point: Point) -> Task:
+        """What runs a point, or goes on with it."""
+        words = tuple(self.words(point))
+        return Task(point.name, self.module, words, self.place(point), self.again, self.threads)
 
-    def all(self, points: Sequence[Point], jobs: int, say: Callable[[str], object]) -> Iterator[Ended]:
-        """Every point, as it ends, ``jobs`` at a time; what was done earlier comes first.
+    def ended(self, point: Point, done: Done) -> Ended:
+        """How a point ended whose process did."""
+        folder = self.place(point)
+        card = read_card(folder) if (folder / CARD).exists() else {}
+        lines = [line for line in done.said.splitlines() if line.strip() and not line.startswith("warning:")]
+        problem = "" if done.code == 0 or not lines else lines[-1]
+        return Ended(point, folder, CODES.get(done.code, "failed"), card, problem)
+
+    def all(self, points: Sequence[Point], jobs: int | None, say: Callable[[str], object]) -> Iterator[Ended]:
+        """Every point, as it ends, ``jobs`` at a time (None: as the scheduler sees fit); what was done earlier comes
+        first.
 
         ``say`` gets how many are done and how long the rest will take.  Ctrl-C and SIGTERM are passed on to what
-        runs, which then saves its state, and raise KeyboardInterrupt.
+        runs here, which then saves its state, and raise KeyboardInterrupt.  InputError where another command runs
+        points in this folder.
         """
+        self.folder.mkdir(parents=True, exist_ok=True)
+        with owned(self.folder) as held:
+            if not held:
+                problem, repair = "another command runs its points", "wait for it, or name another --out"
+                raise InputError(Fault("folder", str(self.folder), problem, repair=repair))
+            yield from self._all(points, jobs, say)
+
+    def _all(self, points: Sequence[Point], jobs: int | None, say: Callable[[str], object]) -> Iterator[Ended]:
         earlier = [self.before(point) for point in points]
         yield from (ended for ended in earlier if ended is not None)
-        left = [point for point, ended in zip(points, earlier, strict=True) if ended is None]
+        left = {point.name: point for point, ended in zip(points, earlier, strict=True) if ended is None}
         if len(left) < len(points):
             say(f"{len(points) - len(left)} of {len(points)} points are there already")
-        start = time.perf_counter()
-        with _terminable(), ThreadPoolExecutor(jobs) as pool:
-            try:
-                futures: list[Future[Ended]] = [pool.submit(self._unless_stopped, point) for point in left]
-                for number, future in enumerate(as_completed(futures), 1):
-                    ended = future.result()
-                    rest = (time.perf_counter() - start) / number * (len(left) - number)
-                    say(f"{ended.point.name}: {ended.outcome}, {ended.seconds:.3g} s "
-                        f"({number} of {len(left)}, about {rest:.0f} s left)")  # fmt: skip
-                    yield ended
-            except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
-                self._stop()
-                raise
-
-    def _unless_stopped(self, point: Point) -> Ended:
-        """Run the point with `one`, unless another point has raised."""
-        if self._stopped:
-            return Ended(point, self.place(point), CODES[130], {})
-        try:
-            return self.one(point)
-        except BaseException:
-            self._stopped = True
-            raise
-
-    def _process(self, words: list[str]) -> tuple[int, str]:
-        with self._lock:
-            if self._stopped:
-                return 130, "interrupted"
-            process = subprocess.Popen(
-                [sys.executable, "-m", self.module, *words],
-                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True,
-                errors="replace", creationflags=OWN_GROUP,
-            )  # fmt: skip
-            self._alive.add(process)
-        try:
-            said = process.communicate()[1]
-        finally:
-            with self._lock:
-                self._alive.discard(process)
-        return process.returncode, said
-
-    def _stop(self) -> None:
-        """Pass Ctrl-C on to the running processes."""
-        with self._lock:
-            self._stopped = True
-            for process in self._alive:
-                process.send_signal(STOP)
+        if not left:
+            return
+        rest = progress.of({name: self.place(point) for name, point in left.items()}, say)
+        with _terminable():
+            done = self.scheduler.run([self.task(point) for point in left.values()], jobs, rest)
+            for number, each in enumerate(done, 1):
+                ended = self.ended(left[each.task.name], each)
+                rest.ended(ended.point.name, ended.seconds)
+                say(f"{ended.point.name}: {ended.outcome}, {ended.seconds:.3g} s "
+                    f"({number} of {len(left)}, {rest.words()})")  # fmt: skip
+                yield ended
 
 
 @contextmanager

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,17 +16,22 @@ if TYPE_CHECKING:
     from porescale.common.studies.parameter_table import Point
     from porescale.common.studies.runner import Campaign, Ended
 
+TABLES = 512
+"""Tables of run folders that are kept in memory."""
+SELDOM = 5.0
+"""Files of a sweep are written again after so many times what writing them took."""
+
 
 def run_points(
     program: Program,
     campaign: Campaign,
     points: Sequence[Point],
-    jobs: int,
+    jobs: int | None,
     rows: Sequence[dict[str, Any]],
     command: str,
     say: Callable[[str], object],
 ) -> list[Ended]:
-    """Run all points, and write the files of the sweep whenever one has ended; in the order of the points.
+    """Run all points, and write the files of the sweep as they end, and at the end; in the order of the points.
 
     rows : what is compared, as `expected` gives it; none: how every column of the series ends;  command : that the
     files name;  say : as of `Campaign.all`.
@@ -33,10 +40,28 @@ def run_points(
 
     ends: list[Ended] = []
     order = {point.name: at for at, point in enumerate(points)}
-    for ended in campaign.all(points, jobs, say):
-        ends.append(ended)
+    tables = lru_cache(TABLES)(program.table)
+    before, took = 0.0, 0.0
+
+    def write() -> None:
+        """Write the files of what has ended so far."""
+        nonlocal before, took
+        begun = time.monotonic()
         ends.sort(key=lambda one: order[one.point.name])
-        sweep_files.write(campaign.folder, command, ends, rows or columns_at_end(program, ends), program.table)
+        sweep_files.write(campaign.folder, command, ends, rows or columns_at_end(program, ends), tables, points)
+        before = time.monotonic()
+        took = before - begun
+
+    for point in points:  # another's runs are found before anything is written beside them
+        campaign.before(point)
+    write()
+    try:
+        for ended in campaign.all(points, jobs, say):
+            ends.append(ended)
+            if time.monotonic() - before > SELDOM * took:
+                write()
+    finally:
+        write()
     return ends
 
 

@@ -1,4 +1,4 @@
-"""The files of a sweep: sweep.csv, sweep.md and sweep.png, each whole or not at all."""
+"""The files of a sweep: sweep.csv, sweep.md and sweep.png, and ensemble.csv of repeats, each whole or not at all."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -8,12 +8,17 @@ from typing import Any
 import numpy as np
 
 from porescale.common.evidence import files
+from porescale.common.studies import ensemble_files, ensemble_picture
+from porescale.common.studies.ensemble import Ensemble, ensembles
+from porescale.common.studies.parameter_table import Point
 from porescale.common.studies.quantities import TIME, Columns, measured
 from porescale.common.studies.runner import FINISHED, Ended
 
 NAME = "sweep"
 COSTS = {"steps": "step", "seconds (s)": "seconds", "core-seconds (s)": "core_seconds", "memory (B)": "peak_bytes"}
 """Columns of what a point cost, and the keys of a run card they come from."""
+Rows = Sequence[Mapping[str, Any]]
+"""What is compared, as `porescale.common.studies.quantities` describes a number."""
 Tables = Callable[[Path, str], Columns]
 """Gives the columns of a table of a run folder, "series" for series.csv."""
 
@@ -31,7 +36,7 @@ def number(ended: Ended, row: Mapping[str, Any], tables: Tables) -> float:
         return math.nan
 
 
-def line(ended: Ended, keys: Sequence[str], rows: Sequence[Mapping[str, Any]], tables: Tables) -> dict[str, Any]:
+def line(ended: Ended, keys: Sequence[str], rows: Rows, tables: Tables) -> dict[str, Any]:
     """A point as one line of the table; numbers of points that did not finish are empty."""
     made: dict[str, Any] = {"name": ended.point.name, "quality": ended.point.quality or ""}
     made |= {key: ended.point.value(key) for key in keys}
@@ -48,18 +53,31 @@ def title(row: Mapping[str, Any]) -> str:
     return name if not unit or name.endswith(")") else f"{name} ({unit})"
 
 
-def lines_of(ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables) -> list[dict[str, Any]]:
+def lines_of(ends: Sequence[Ended], rows: Rows, tables: Tables) -> list[dict[str, Any]]:
     """The lines of the table, one for each point."""
     return [line(ended, keys_of(ends), rows, tables) for ended in ends]
 
 
 def write(
-    folder: Path, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables
-) -> list[dict[str, Any]]:
-    """Write the files into ``folder``; gives the lines of the table."""
+    folder: Path, command: str, ends: Sequence[Ended], rows: Rows, tables: Tables, points: Sequence[Point]
+) -> None:
+    """Write the files into ``folder``.  ends : of the points that have ended, in their order;  rows : what is compared;
+    points : all of the sweep."""
+    found = ensembles(points, ends)
+    repeated = ensemble_lines(found, rows, tables)
+    if repeated:
+        files.write_files(folder, {f"{ensemble_files.NAME}.csv": ensemble_files.csv_text(repeated)})
+    if not ends:
+        return
     lines = lines_of(ends, rows, tables)
-    files.write_study(folder, NAME, csv=csv_text(lines), md=markdown(command, lines), png=picture(ends, rows, tables))
-    return lines
+    text = markdown(command, lines, ensemble_files.markdown(repeated) if repeated else ())
+    drawn = ensemble_picture.picture(found, rows, tables) if found else picture(ends, rows, tables)
+    files.write_study(folder, NAME, csv=csv_text(lines), md=text, png=drawn)
+
+
+def ensemble_lines(found: Sequence[Ensemble], rows: Rows, tables: Tables) -> list[ensemble_files.Line]:
+    """The lines of the table of ensembles; [] where nothing is repeated."""
+    return ensemble_files.lines_of(found, rows, lambda ended, row: number(ended, row, tables))
 
 
 def csv_text(lines: Sequence[Mapping[str, Any]]) -> str:
@@ -67,12 +85,12 @@ def csv_text(lines: Sequence[Mapping[str, Any]]) -> str:
     return files.csv_text(lines[0], [each.values() for each in lines])
 
 
-def markdown(command: str, lines: Sequence[Mapping[str, Any]]) -> str:
-    """The same as a table to read: four digits, empty columns left out."""
+def markdown(command: str, lines: Sequence[Mapping[str, Any]], more: Sequence[str] = ()) -> str:
+    """The same as a table to read: four digits, empty columns left out;  more : lines that follow."""
     shown = [name for name in lines[0] if any(each[name] not in ("", None) for each in lines)]
     parts = [f"# Sweep\n\nMade by `{command}`; the table with all digits is {NAME}.csv.\n\n![curves]({NAME}.png)\n"]
     table = files.markdown_table(shown, [[_short(each[name]) for name in shown] for each in lines])
-    return "\n".join([*parts, *table]) + "\n"
+    return "\n".join([*parts, *table, *more]) + "\n"
 
 
 def _short(value: Any) -> str:
@@ -81,7 +99,7 @@ def _short(value: Any) -> str:
     return "" if value is None else str(value).replace("|", "/")
 
 
-def picture(ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables) -> bytes:
+def picture(ends: Sequence[Ended], rows: Rows, tables: Tables) -> bytes:
     """The columns that the rows name, over time, a panel each, a curve for each finished point, as a PNG."""
     columns = list(dict.fromkeys((str(row.get("file", "series")), str(row["column"])) for row in rows))[:12]
     across = min(3, max(1, len(columns)))

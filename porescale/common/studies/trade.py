@@ -2,20 +2,22 @@
 
 The error of a run in one quantity is its distance from the exact value or from the reference run of the same repeat,
 over the quantity's scale; of a curve or field, the rms distance over its places.  That of a run is the rms over
-quantities; that of a point the rms over repeats, with their standard deviation beside it.  Grains are chaotic, so that
+quantities; that of a point the rms over repeats, with their standard deviation beside it, and the mean of
+their errors as a sample, with what that is worth.  Grains are chaotic, so that
 an error never falls below what a last digit changes: beside all errors stands ``packings``, how far the reference runs
 of different repeats are off their mean, measured in the same way.
 """
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.statistics import Sample
 from porescale.common.studies.parameter_table import Point
 from porescale.common.studies.quantities import Columns, curve, measured
 from porescale.common.studies.runner import FINISHED, Ended
@@ -35,7 +37,7 @@ class Traded:
     errors : of each quantity;  error, scatter : of all together, over repeats;  core_seconds (of steps), seconds,
     peak_bytes, steps, time (s, simulated), besides (core-seconds of other things: snapshots, pictures, film), pace
     (core-seconds of a step as runs began) : means over repeats;  outcome : "finished", or the first other one, and
-    errors are infinite.
+    errors are infinite;  each : error of each repeat.
     """
 
     knob: str
@@ -54,6 +56,12 @@ class Traded:
     pace: float = 0.0
     on_front: bool = False
     problem: str = ""
+    each: tuple[float, ...] = ()
+
+    @property
+    def sample(self) -> Sample:
+        """Errors of the repeats; none where one did not finish, or has no error."""
+        return Sample(self.each if all(map(math.isfinite, self.each)) else ())
 
 
 @dataclass
@@ -118,12 +126,15 @@ class Errors:
         bad = next((ended for ended in ends if ended.outcome != FINISHED), None)
         if bad is not None:
             nothing = dict.fromkeys((quantity.name for quantity in self.plan.quantity), math.inf)
-            return Traded(knob, label, point, bad.outcome, nothing, math.inf, 0.0, *costs(ends), problem=bad.problem)
+            done = sum(ended.outcome == FINISHED for ended in ends)
+            said = f"{done} of {len(ends)} repeats finished; {bad.point.name}: {bad.problem}"
+            problem = said if len(ends) > 1 else bad.problem
+            return Traded(knob, label, point, bad.outcome, nothing, math.inf, 0.0, *costs(ends), problem=problem)
         table = np.array([[self.error(ended, k, it) for it in self.plan.quantity] for k, ended in enumerate(ends)])
         errors = {quantity.name: rms(table[:, k]) for k, quantity in enumerate(self.plan.quantity)}
         each = [rms(row) for row in table]
-        scatter = float(np.std(each, ddof=1)) if len(each) > 1 and np.isfinite(each).all() else 0.0
-        return Traded(knob, label, point, FINISHED, errors, rms(each), scatter, *costs(ends))
+        made = Traded(knob, label, point, FINISHED, errors, rms(each), 0.0, *costs(ends), each=tuple(each))
+        return replace(made, scatter=made.sample.deviation) if len(made.sample.values) > 1 else made
 
 
 def distance(values: NDArray[Any], truth: NDArray[Any], scale: float) -> float:
@@ -169,4 +180,4 @@ def front(points: Sequence[Traded]) -> list[Traded]:
             for other in points
         )  # fmt: skip
 
-    return [Traded(**{**vars(one), "on_front": not beaten(one)}) for one in points]
+    return [replace(one, on_front=not beaten(one)) for one in points]

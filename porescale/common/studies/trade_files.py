@@ -5,7 +5,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from porescale.common.core.statistics import LEVEL, Sample
 from porescale.common.evidence import files
+from porescale.common.studies import ensemble_files
 from porescale.common.studies.trade import Traded
 
 FRONT = "front.json"
@@ -39,7 +41,7 @@ def write(
     packings: Mapping[str, float],
     caveats: Caveats | None = None,
 ) -> None:
-    """Write the files into ``folder``.
+    """Write the files into ``folder``;  ``about`` may hold "references", the numbers of each repeat of the reference.
 
     packings : how far references of different repeats are off their mean;  caveats : what errors of points do not show.
     """
@@ -54,10 +56,11 @@ def csv_text(points: Sequence[Traded]) -> str:
     """CSV text with one line for each point, all digits."""
     names = list(points[0].errors) if points else []
     header = ["knob", "label", "outcome", "on front", "error", "scatter", "core-seconds (s)", "seconds (s)",
-              "memory (B)", "steps", *names, "quality", "settings"]  # fmt: skip
+              "memory (B)", "steps", *names, "quality", "settings", "repeats", *ensemble_files.WORTH]  # fmt: skip
     rows = [
         [one.knob, one.label, one.outcome, int(one.on_front), one.error, one.scatter, one.core_seconds, one.seconds,
-         one.peak_bytes, one.steps, *one.errors.values(), one.point.quality or "", " ".join(one.point.settings)]
+         one.peak_bytes, one.steps, *one.errors.values(), one.point.quality or "", " ".join(one.point.settings),
+         len(one.each), *ensemble_files.worth(one.sample)]
         for one in points
     ]  # fmt: skip
     return files.csv_text(header, rows)
@@ -69,17 +72,42 @@ def markdown(about: dict[str, Any], points: Sequence[Traded], packings: Mapping[
     parts = [f"# Speed against accuracy\n\nMade by `{about.get('command', '')}`, {about.get('date', '')}, "
              f"{about.get('machine', {}).get('processor', '')}. Bold: no other point is both cheaper and better.\n\n"
              f"![front]({NAME}.png)\n"]  # fmt: skip
-    rows = []
+    rows, repeated = [], any(len(one.each) > 1 for one in points)
     for one in sorted(points, key=lambda each: each.core_seconds):
         label = f"**{one.label}**" if one.on_front else one.label
         total = f"{_percent(one.error)} ± {_percent(one.scatter)}" if math.isfinite(one.error) else one.outcome
         cells = [label, f"{one.core_seconds:.3g}", f"{one.peak_bytes / 2**20:.0f}", total]
+        cells += [_mean(one.sample)] * repeated
         rows.append([*cells, *(_percent(one.errors[name]) for name in names)])
     if packings:
-        cells = ["another packing, finest", "", "", ""]
+        cells = ["another packing, finest", "", "", "", *[""] * repeated]
         rows.append([*cells, *(_percent(packings.get(name, math.nan)) for name in names)])
-    header = ["point", "core-seconds", "memory, MiB", "error ± scatter", *names]
-    return "\n".join([*parts, *files.markdown_table(header, rows)]) + "\n"
+    header = ["point", "core-seconds", "memory, MiB", "error ± scatter"]
+    header += [f"mean error ± {100 * LEVEL:g} %"] * repeated + names
+    return "\n".join([*parts, *files.markdown_table(header, rows), *_references(about)]) + "\n"
+
+
+def _mean(sample: Sample) -> str:
+    """A mean error with half of Student's interval, and of how many it is."""
+    if not math.isfinite(sample.half):
+        return f"no interval of {len(sample.values)}"
+    return f"{_percent(sample.mean)} ± {_percent(sample.half)} of {len(sample.values)}"
+
+
+def _references(about: Mapping[str, Any]) -> list[str]:
+    """A table of the numbers of the reference over its repeats; none where it has a single one."""
+    found: Sequence[Mapping[str, Sequence[float]]] = about.get("references") or ()
+    units = {one["name"]: one.get("unit", "") for one in about.get("quantities") or ()}
+    if len(found) < 2:
+        return []
+    rows = []
+    for name in found[0]:
+        sample = Sample(tuple(float(one[name][0]) for one in found))
+        shown = [ensemble_files.short(value) for value in ensemble_files.worth(sample)]
+        ends = [" … ".join(pair) if all(pair) else "" for pair in (shown[3:5], shown[5:7])]
+        rows.append([name, units.get(name, ""), len(sample.values), shown[0], shown[2], shown[1], *ends])
+    header = ["the reference", "unit", "n", "mean", "standard error", "one run ±", f"{100 * LEVEL:g} %", "bootstrap"]
+    return ["", *files.markdown_table(header, rows)] if rows else []
 
 
 def _percent(share: float) -> str:

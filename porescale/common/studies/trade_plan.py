@@ -49,6 +49,10 @@ class Over(Section):
     key: str = pydantic.Field(description="section.key")
     values: tuple[int | float | str, ...] = pydantic.Field(min_length=1, description="its values, a run for each")
 
+    def option(self) -> str:
+        """As `--over` has it."""
+        return f"{self.key}={','.join(literal(value, self.key) for value in self.values)}"
+
 
 class Settings(Section):
     """A quality level and settings over it."""
@@ -146,17 +150,6 @@ class Plan(Section):
     def caveats(self) -> dict[tuple[str | None, tuple[str, ...]], tuple[str, float]]:
         """What is to be said of points, and of runs longer than what (s), by quality and settings."""
         return {self._over_base(it): (it.but, it.but_after) for knob in self.knob for it in knob.point if it.but}
-
-    def repeats(self, point: Point) -> list[Point]:
-        """One point for each value of ``over``, or the point itself."""
-        if self.over is None:
-            return [point]
-        key = self.over.key
-        texts = [literal(value, key) for value in self.over.values]
-        last = key.rpartition(".")[2]
-        return named(
-            [Point(f"{point.name},{last}={text}", (*point.settings, f"{key}={text}"), point.quality) for text in texts]
-        )
 
     def reference_point(self) -> Point | None:
         """The run finer than all."""

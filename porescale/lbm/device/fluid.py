@@ -1,12 +1,13 @@
 """A `Fluid` whose populations are stepped on a graphics device.
 
-Everything that is not a population stays as it is: sides, plates, law, number of steps.  What reads the populations
-(fields, moments, the state of a checkpoint) fetches them first and is the CPU's code, so a checkpoint holds nothing of
-a device and goes on where one likes.
+Everything that is not a population stays as it is: sides, plates, law, number of steps.  Moments and totals are worked
+out on the device (readings.py).  What reads the populations themselves (stress, the state of a checkpoint) fetches them
+first and is the CPU's code, so a checkpoint holds nothing of a device and goes on where one likes.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -17,14 +18,23 @@ from porescale.common.compiled.cuda import device_kernel, launch, require_device
 from porescale.lbm.boundary.pressure import OpenLinks
 from porescale.lbm.boundary.thin_plate import Plate
 from porescale.lbm.device.kernels import exchange_links, let_in_links, pass_on_links, sweep_cells
+from porescale.lbm.device.readings import Readings, bytes_of_readings
 from porescale.lbm.fluid import Fluid, Sweep
 from porescale.lbm.lattice import row_length
 from porescale.lbm.stream import sweep
+from porescale.lbm.totals import Totals
 
 CELLS_IN_BLOCK, LINKS_IN_BLOCK = 256, 64
 """Threads of a block: whole warps, as the devices' maker recommends; not tuned, since no device was at hand."""
 
 kernel_of: Any = cache(device_kernel)
+
+
+@dataclass(frozen=True)
+class DeviceSweep:
+    """A sweep over the cells that runs on the device: ``step`` (padded populations there, parity, law of collision)."""
+
+    step: Callable[[Any, int, Any], None]
 
 
 class OpenSide(NamedTuple):
@@ -44,21 +54,32 @@ class DeviceFluid(Fluid):
     populations : the CPU's copy, brought up to date by whatever reads it here; ``fetch`` before reading it otherwise.
     """
 
+    on_device = True
+
     def __init__(self, *arguments: Any, **options: Any) -> None:
         require_device()
         super().__init__(*arguments, **options)
-        self._there: Any = None
-        """Populations on the device, None where the CPU's are to be sent before the next step."""
-        self._fetched = True
+        self._there = to_device(self.padded)
+        """Populations on the device."""
+        self._fetched, self._sent = True, True
+        self._readings = Readings(self.nx, self.ny, self.force, self.populations.dtype)
         self._links = (to_device(self.links.halo), to_device(self.links.inner))
         self._plates: dict[Plate, tuple[Any, Any, Any]] = {}
         self._open = {name: _open_side(own, self.force) for name, own in self.links.own.items()}
-        self._send_sides()
+        self._added = to_device(self.links.added)
+        self._excess = {name: to_device(_open_links(own).excess) for name, own in self.links.own.items()}
 
     def _send_sides(self) -> None:
         """Velocities and densities of the sides, as they are now."""
-        self._added = to_device(self.links.added)
-        self._excess = {name: to_device(_open_links(own).excess) for name, own in self.links.own.items()}
+        self._added.copy_to_device(self.links.added)
+        for name, own in self.links.own.items():
+            self._excess[name].copy_to_device(_open_links(own).excess)
+
+    def send(self) -> None:
+        """Bring the device's populations up to date."""
+        if not self._sent:
+            self._there.copy_to_device(self.padded)
+            self._sent = True
 
     def fetch(self) -> None:
         """Bring the CPU's populations up to date."""
@@ -66,17 +87,19 @@ class DeviceFluid(Fluid):
             self._there.copy_to_host(self.padded)
             self._fetched = True
 
-    def advance(self, cells: Sweep = sweep, *extra: Any) -> None:
-        """One step of plain fluid, as ``Fluid.advance``; ValueError with another sweep."""
-        if cells is not sweep:
-            raise ValueError("a fluid on the device takes no other sweep than that of plain fluid")
-        if self._there is None:
-            self._there = to_device(self.padded)
+    def advance(self, cells: Sweep | DeviceSweep = sweep, *extra: Any) -> None:
+        """One step, as ``Fluid.advance``; ValueError with a sweep of the CPU other than that of plain fluid."""
+        if cells is not sweep and not isinstance(cells, DeviceSweep):
+            raise ValueError("a fluid on the device takes no other sweep of the CPU than that of plain fluid")
+        self.send()
         self._fetched = False
         odd, law, flat = self.step % 2, self.law_of_sweep, self._there.reshape(self.padded.size)
         if odd:
             self._exchange(flat, +1.0)
-        launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, self.nx, odd, law)
+        if isinstance(cells, DeviceSweep):
+            cells.step(self._there, odd, law)
+        else:
+            launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, self.nx, odd, law)
         if odd:
             self._exchange(flat, -1.0)
         halo, inner = self._links
@@ -91,10 +114,40 @@ class DeviceFluid(Fluid):
     def _exchange(self, flat: Any, sign: float) -> None:
         """Exchange the slots of all links that plates cut, before an odd sweep (+1) and after it (-1)."""
         for plate in self.plates:
-            if plate not in self._plates:
-                self._plates[plate] = (to_device(plate.first), to_device(plate.second), to_device(plate.pull))
-            values = (*self._plates[plate], plate.links_from(), plate.signed_speed(sign))
+            values = (*self._links_of(plate), plate.links_from(), plate.signed_speed(sign))
             launch(self._kernel(exchange_links), plate.first.size, LINKS_IN_BLOCK, flat, *values)
+
+    def _links_of(self, plate: Plate) -> tuple[Any, Any, Any]:
+        """Slots and pull of the links of a plate, on the device."""
+        if plate not in self._plates:
+            self._plates[plate] = (to_device(plate.first), to_device(plate.second), to_device(plate.pull))
+        return self._plates[plate]
+
+    @contextmanager
+    def _readable_there(self) -> Iterator[None]:
+        """As ``readable``, of the populations on the device."""
+        self.send()
+        kept, flat = [], self._there.reshape(self.padded.size)
+        if self.step % 2:
+            for slots in (part for plate in self.plates for part in self._links_of(plate)[:2]):
+                kept.append((slots, to_device(np.empty(slots.size, self.populations.dtype))))
+                launch(self._readings.keep, slots.size, LINKS_IN_BLOCK, flat, *kept[-1])
+            self._exchange(flat, +1.0)
+        try:
+            yield
+        finally:
+            for values in kept:
+                launch(self._readings.put, values[0].size, LINKS_IN_BLOCK, flat, *values)
+
+    def moments(self) -> tuple[NDArray[np.floating], NDArray[np.floating], NDArray[np.floating]]:
+        """As ``Fluid.moments``; fetches these three."""
+        with self._readable_there():
+            return self._readings.moments(self._there, self.step % 2)
+
+    def totals(self) -> Totals:
+        """As ``Fluid.totals``; fetches sums of blocks of cells."""
+        with self._readable_there():
+            return self._readings.totals(self._there, self.step % 2)
 
     def _kernel(self, function: Any) -> Any:
         """A kernel for the law and precision of this fluid."""
@@ -110,7 +163,7 @@ class DeviceFluid(Fluid):
     def set_flow(self, ux: Any, uy: Any, density: Any = 1.0) -> None:
         """As ``Fluid.set_flow``."""
         super().set_flow(ux, uy, density)
-        self._there, self._fetched = None, True
+        self._sent, self._fetched = False, True
 
     def set_force_field(self, force: NDArray[np.floating]) -> None:
         """ValueError: the device has no force of every cell."""
@@ -134,13 +187,14 @@ class DeviceFluid(Fluid):
     def restore(self, state: dict[str, Any]) -> None:
         """Restore a state, wherever it comes from."""
         super().restore(state)
-        self._there, self._fetched = None, True
+        self._sent, self._fetched = False, True
         self._send_sides()
 
 
 def bytes_needed(nx: int, ny: int, real_bytes: int) -> int:
-    """Device memory of a box of nx by ny cells: populations with their halo, two slots and a number a link."""
-    return 9 * row_length(nx) * (ny + 2) * real_bytes + 6 * (nx + ny) * (16 + real_bytes)
+    """Device memory of a box of nx by ny cells: populations with halo, two slots and a number a link, readings."""
+    links = 6 * (nx + ny) * (16 + real_bytes)
+    return 9 * row_length(nx) * (ny + 2) * real_bytes + links + bytes_of_readings(nx, ny, real_bytes)
 
 
 def _open_links(own: Any) -> OpenLinks:

@@ -11,8 +11,8 @@ from porescale.common.api.sweep import points_of
 from porescale.common.core.errors import InputError, PorescaleWarning
 from porescale.common.record import card as cards
 from porescale.common.record.series import Series
-from porescale.common.studies import runner
 from porescale.common.studies.parameter_table import varied
+from porescale.common.studies.schedulers.task import Process
 
 SCENE = """
 [domain]
@@ -46,7 +46,8 @@ def ran(monkeypatch):
     """Points without processes: writes what a run would; friction 9 goes unstable."""
     called: list[list[str]] = []
 
-    def one(self: runner.Campaign, words: list[str]) -> tuple[int, str]:
+    def one(self: Process) -> tuple[int, str]:
+        words = self.task.command()
         called.append(words)
         folder = Path(words[words.index("--out") + 1])
         settings = [words[k + 1] for k, word in enumerate(words) if word == "--set"]
@@ -60,7 +61,7 @@ def ran(monkeypatch):
         series.close()
         return (3, "unstable at step 7") if unstable else (0, "")
 
-    monkeypatch.setattr(runner.Campaign, "_process", one)
+    monkeypatch.setattr(Process, "run", one)
     return called
 
 

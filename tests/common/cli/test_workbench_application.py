@@ -47,7 +47,7 @@ def test_a_new_scene_checks_and_runs_as_it_is(toy) -> None:
     assert (code, err) == (0, [])
     assert "finished at t = 2 s, step 10" in out
     assert "runs/decay: card.json" in out
-    assert card()["scene"] == {"decay": {"rate": 3.0, "start": 1.0}, "duration": 2.0, "trouble": ""}
+    assert card()["scene"] == {"decay": {"rate": 3.0, "start": 1.0}, "noise": None, "duration": 2.0, "trouble": ""}
     assert card()["quality"] is None
     code, out, err = toy("show", "runs/decay")
     assert (code, out) == (0, "runs/decay/end.png\n")

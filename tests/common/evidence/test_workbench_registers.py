@@ -253,7 +253,7 @@ def test_benchmark_rows_have_exactly_the_promised_keys() -> None:
         return [Work(copy, copy.values.size, "cells/s", copy.values.size, 2 * copy.values.itemsize, "all")]
 
     rows = list(made.run(threads=1, dtype="float32", min_seconds=0.0))
-    keys = ["name", "size", "threads", "dtype", "rate", "unit", "seconds", "bytes", "share_of_bandwidth"]
+    keys = ["name", "size", "threads", "dtype", "rate", "unit", "seconds", "bytes", "share_of_bandwidth", "device"]
     assert all(list(asdict(row)) == keys for row in rows)
     plain, streams = rows
     assert (plain.name, plain.size, plain.threads, plain.dtype) == ("plain", 3, 1, "float32")

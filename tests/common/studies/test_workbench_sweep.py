@@ -2,7 +2,9 @@
 
 import csv
 import json
+from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from porescale.common.core.errors import InputError
 from porescale.common.studies import sweep_files
 from porescale.common.studies.parameter_table import Point, crossed, named, read_points, varied
 from porescale.common.studies.runner import Campaign, Ended
+from porescale.common.studies.schedulers.local import Local
 from tests.reference.toy_package import TOY
 
 SCENE = "[decay]\nrate = 3\n[quality.fine.decay]\nstart = 2\n"
@@ -38,8 +41,13 @@ class Machine:
         return {"finished": 0, "unstable": 3, "interrupted": 130}[outcome], "" if outcome == "finished" else "grain 7"
 
 
+def local(machine: Callable[[list[str]], tuple[int, str]]) -> Local:
+    """This machine, with ``machine`` in place of processes."""
+    return Local(lambda task, cores: SimpleNamespace(run=lambda: machine(task.command()), stop=lambda: None))
+
+
 def campaign(folder: Path, machine: Machine, **more) -> Campaign:
-    return Campaign("toy", folder / "scene.toml", folder / "out", run=machine, **more)
+    return Campaign("toy", folder / "scene.toml", folder / "out", scheduler=local(machine), **more)
 
 
 def test_a_csv_gives_a_point_for_each_row(tmp_path):
@@ -161,7 +169,7 @@ def test_an_exception_among_points_stops_the_rest(tmp_path):
         raise OSError("gone")
 
     with pytest.raises(OSError, match="gone"):
-        list(Campaign("toy", tmp_path, tmp_path, run=broken).all(varied(["a=" + ",".join("123456789")]), 1, print))
+        list(campaign(tmp_path, broken).all(varied(["a=1,2,3,4,5,6,7,8,9"]), 1, print))
     assert len(called) == 1
 
 
@@ -170,7 +178,7 @@ def test_the_table_holds_what_was_set_what_it_cost_and_what_came_out(tmp_path):
     ends = list(campaign(tmp_path, Machine({"rate=2": "unstable"})).all(points, 1, print))
     rows = [{"name": "half", "column": "left (m)", "at": {"first_below": 0.5}, "unit": "s"},
             {"name": "lost", "column": "nowhere", "at": "end"}]  # fmt: skip
-    sweep_files.write(tmp_path / "out", "toy sweep", ends, rows, TOY.table)
+    sweep_files.write(tmp_path / "out", "toy sweep", ends, rows, TOY.table, points)
     lines = list(csv.DictReader((tmp_path / "out" / "sweep.csv").open()))
     assert [line["decay.rate"] for line in lines] == ["1", "2"]
     assert float(lines[0]["half (s)"]) == pytest.approx(0.7)  # the first of the tenths beyond ln 2 = 0.693

@@ -1,5 +1,6 @@
 """Errors, costs and the front of a trade study, and what `--error` and `--budget` pick from it."""
 
+import csv
 import json
 import math
 import re
@@ -11,10 +12,12 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import InputError
+from porescale.common.core.statistics import half_width
 from porescale.common.schema.sections import validate
 from porescale.common.studies import trade_files
+from porescale.common.studies.ensemble import Repeats
 from porescale.common.studies.front import FrontPoint, Here, begun, choose, pace_of, read_front
-from porescale.common.studies.parameter_table import Point
+from porescale.common.studies.parameter_table import Point, repeats
 from porescale.common.studies.quantities import curve, measured
 from porescale.common.studies.runner import Ended
 from porescale.common.studies.trade import Errors, Traded, distance, front
@@ -82,8 +85,9 @@ def test_a_plan_has_a_run_for_every_repeat_and_shares_what_two_knobs_have_in_com
     assert [(knob, label) for knob, label, _ in variants] == [
         ("spacing; step", "spacing 1; step as it is"), ("spacing", "spacing 2"),
     ]  # fmt: skip
-    repeats = made.repeats(variants[1][2])
-    assert [point.settings for point in repeats] == [
+    assert made.over
+    runs = repeats(variants[1][2], Repeats(None, made.over.option()).choices(None, None))
+    assert [point.settings for point in runs] == [
         ("fluid.spacing=2", "grains.seed=1"), ("fluid.spacing=2", "grains.seed=2"),
     ]  # fmt: skip
     assert made.reference_point() == Point("reference", (), "fine")
@@ -139,6 +143,28 @@ def test_a_point_that_did_not_finish_is_infinitely_wrong_and_never_on_the_front(
     point = errors.trade("k", "l", Point("p", ()), [ended("4 1"), ended("6 1", "unstable")])
     assert (point.outcome, point.error) == ("unstable", math.inf)
     assert not front([point])[0].on_front
+
+
+def test_a_point_has_the_mean_of_its_repeats_with_what_it_is_worth(tmp_path):
+    errors = Errors(plan(tmp_path), tables, {}, [ended("4 1"), ended("6 1"), ended("8 1")])
+    point = errors.trade("k", "l", Point("p", ()), [ended("5 1"), ended("6 4"), ended("8 2")])
+    assert len(point.each) == 3
+    assert point.error == pytest.approx(math.sqrt(np.mean(np.square(point.each))))  # as fronts have it: the rms
+    assert point.scatter == pytest.approx(np.std(point.each, ddof=1))
+    trade_files.write(tmp_path / "out", {"references": errors.answers()}, [point], {})
+    with open(tmp_path / "out" / "trade.csv") as file:
+        (line,) = csv.DictReader(file)
+    assert line["repeats"] == "3"
+    assert float(line["mean"]) == pytest.approx(np.mean(point.each))
+    assert float(line["t high"]) - float(line["mean"]) == pytest.approx(half_width(point.each))
+    text = (tmp_path / "out" / "trade.md").read_text()
+    assert "mean error ± 95 %" in text
+    assert "| the reference | unit | n | mean |" in text
+    two = errors.trade("k", "l", Point("p", ()), [ended("5 1"), ended("6 4")])
+    trade_files.write(tmp_path / "two", {}, [two], {})
+    assert "no interval of 2" in (tmp_path / "two" / "trade.md").read_text()
+    lost = errors.trade("k", "l", Point("p", ()), [ended("5 1"), ended("6 4"), ended("8 2", "unstable")])
+    assert lost.problem.startswith("2 of 3 repeats finished")
 
 
 def test_exact_values_need_no_reference_and_features_are_compared_number_by_number(tmp_path):
