@@ -88,7 +88,7 @@ def _operators(fluid: Fluid, solid: bool, out: Report) -> None:
     """The laws that were chosen, with a word on each; ``solid`` : whether anything solid is in the fluid."""
     out.heading("Operators")
     out.row("collision", fluid.operator, "", OPERATORS[fluid.operator].purpose)
-    out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes")
+    out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes; 1/24: narrow gaps")
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
     if solid:
         out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator].purpose)
@@ -227,11 +227,15 @@ def _regime(density: float, gravity: float, derived: Derived, out: Report) -> No
 def _device(derived: Derived, steps: int, on_cpu: float, out: Report) -> float:
     """What the GPU needs, what there is, and what it would gain; returns seconds on it, those on the CPU if unknown."""
     from porescale.common.compiled.cuda import describe, makers_bandwidth
+    from porescale.coupling.device import bodies
     from porescale.lbm.device.fluid import bytes_needed
 
     assert derived.cells
     name, memory_bytes = describe()
     need = bytes_needed(*derived.cells, derived.precision)
+    if derived.grain_count and derived.diameters and derived.scales:
+        across = math.ceil(derived.diameters[2] / derived.scales.spacing)
+        need += bodies.bytes_needed(*derived.cells, derived.precision, derived.grain_count, across)
     out.row("memory of the GPU", need / 2**20, "MiB", name)
     if memory_bytes and need > memory_bytes:
         out.warn(f"the GPU has {memory_bytes / 2**30:.1f} GiB: the run will not start there")

@@ -19,6 +19,9 @@ from rich.text import Text
 PATIENCE = 2.0
 """Seconds after which a person wonders what happens."""
 LINE_EVERY = 10.0
+HALT, IDLE = 2.0, 0.01
+"""Seconds by which a wait must last too long to count as time in which the process was stopped (SIGSTOP, Ctrl-Z), and
+the share of them in which it must have had no more than the processor: a busy machine gives more."""
 COMPILING = "compiling kernels"
 
 
@@ -38,6 +41,7 @@ class Watch:
         self.time, self.step = start, 0
         self.began = clock.perf_counter()
         self.running_since: float | None = None
+        self.stopped = 0.0
         self.last_line = self.began
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
@@ -61,7 +65,7 @@ class Watch:
         self.step, self.time = step, time
         if self.running_since is None:
             self.running_since = clock.perf_counter()
-            self.start = time
+            self.start, self.stopped = time, 0.0
             self.phase = "running"
 
     def enter(self, phase: str) -> None:
@@ -74,10 +78,11 @@ class Watch:
             self.console.print(Text(text), highlight=False, soft_wrap=True)
 
     def left(self) -> float | None:
-        """Seconds left at the mean speed since the first step; None while unknown."""
+        """Seconds left at the mean speed since the first step, without the time in which the process was stopped; None
+        while unknown."""
         if self.running_since is None or self.time <= self.start:
             return None
-        spent = clock.perf_counter() - self.running_since
+        spent = clock.perf_counter() - self.running_since - self.stopped
         return spent * (self.end - self.time) / (self.time - self.start)
 
     def line(self) -> str:
@@ -88,9 +93,24 @@ class Watch:
         left = self.left()
         return text if left is None else f"{text}, {duration(left)} left"
 
+    def _wait(self, seconds: float) -> bool:
+        """Wait so long, or until the end, and see whether the process was stopped meanwhile; whether it is the end."""
+        until = clock.perf_counter() + seconds
+        while True:
+            began, busy = clock.perf_counter(), clock.process_time()
+            wait = min(max(until - began, 0.0), 0.5)
+            if self._stop.wait(wait):
+                return True
+            now = clock.perf_counter()
+            over = now - began - wait
+            if over > HALT and clock.process_time() - busy < IDLE * over:
+                self.stopped += over
+            if now >= until:
+                return False
+
     def _attend(self) -> None:
         """Runs beside the model: wakes the bar after a while, then keeps it or the lines going."""
-        if self._stop.wait(PATIENCE):
+        if self._wait(PATIENCE):
             return
         if self.console.is_jupyter:
             self._write_over()
@@ -98,7 +118,7 @@ class Watch:
         if self.console.is_terminal:
             self._show_bar()
             return
-        while not self._stop.wait(LINE_EVERY if self.last_line > self.began else LINE_EVERY - PATIENCE):
+        while not self._wait(LINE_EVERY if self.last_line > self.began else LINE_EVERY - PATIENCE):
             self.last_line = clock.perf_counter()
             self.say(self.line())
 
@@ -106,7 +126,7 @@ class Watch:
         """One line of a notebook's output, written over until the end; then it says how far the run came."""
         longest, ended = 0, False
         while not ended:
-            ended = self._stop.wait(0.5)
+            ended = self._wait(0.5)
             text = self.line()
             longest = max(longest, len(text))
             print(f"\r{text:<{longest}}", end="\n" if ended else "", flush=True)
@@ -125,7 +145,7 @@ class Watch:
         with Progress(*columns, console=self.console, transient=True) as bar:
             task = bar.add_task(self.title, start=False, total=None, where="")
             started = False
-            while not self._stop.wait(0.2):
+            while not self._wait(0.2):
                 if self.running_since is not None and not started:
                     bar.start_task(task)
                     started = True
