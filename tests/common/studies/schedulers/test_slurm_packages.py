@@ -57,7 +57,7 @@ def asked(package: str, *words: str) -> int:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("package", "scene", "key", "longer"),
-    [("porescale", COLUMN, "contact.friction", 0.2), ("continuum_sph", TANK, "water.viscosity", 1.0)],
+    [("porescale", COLUMN, "contact.friction", 0.1), ("continuum_sph", TANK, "water.viscosity", 1.0)],
 )
 def test_a_sweep_whose_machine_fails_ends_as_runs_of_their_own(cluster, package, scene, key, longer):
     write(Path("scene.toml"), table(scene, time__end=longer))
