@@ -55,14 +55,15 @@ def wet_ground() -> Scene:
     """Level ground of 0.5 m, 100 particles, beneath 0.3 m of water and full of it."""
     soil = GROUND | {"permeability": 1e-3, "body": [{"outline": [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]]}]}
     water = {"column": [{"width": 0.5, "height": 0.8}], "sound_speed": 80.0}
-    return tank(soil=soil, water=water, numerics={"spacing": SPACING, "artificial_viscosity": 0.1})
+    read = {"probe": [{"x": 0.25, "y": 0.25}], "level": [{"x": 0.25}]}
+    return tank(soil=soil, water=water, numerics={"spacing": SPACING, "artificial_viscosity": 0.1}, **read)
 
 
 class Tank:
     """What is read of a scene's model: mass, where water and soil stand, how fast they go."""
 
     def __init__(self, model: Simulation, names: Mapping[str, str]) -> None:
-        """names : columns of the model's series, by what they are called here."""
+        """names : columns of the model's series and of its tables, by what they are called here."""
         self.model, self._names = model, dict(names)
 
     def advance(self, steps: int) -> None:
@@ -74,8 +75,10 @@ class Tank:
         self.model.check()
 
     def read(self) -> Mapping[str, float]:
-        """The columns of series.csv that the study follows."""
-        row = self.model.series()
+        """The columns of the run's tables that the study follows."""
+        row = dict(self.model.series())
+        for table in self.model.tables().values():
+            row |= table
         return {name: row[column] for name, column in self._names.items()}
 
 
@@ -104,6 +107,7 @@ class Box:
 
 MASS, LEVEL, FASTEST, MOVED = "mass (kg/m)", "mean height (m)", "fastest (m/s)", "largest displacement (m)"
 SOIL_MASS = "mass of soil (kg/m)"
+STANDS, PORES = "level (m)", "pressure in pores, 0.55 m deep (Pa)"
 MOMENTUM = tuple(f"momentum {axis} over Σ m|v| at the start ()" for axis in "xy")
 WATER = {MASS: MASS, LEVEL: LEVEL, FASTEST: FASTEST}
 SOIL = {MASS: MASS, MOVED: MOVED, FASTEST: FASTEST}
@@ -112,6 +116,8 @@ BOTH = {
     LEVEL: LEVEL,
     FASTEST: FASTEST,
     SOIL_MASS: "soil: mass (kg/m)",
+    STANDS: "level 0 (m)",
+    PORES: "probe 0 pressure (Pa)",
     MOVED: "soil: largest displacement (m)",
 }
 
@@ -133,6 +139,8 @@ def rounded(steps: int) -> float:
 
 STAYS = held(LEVEL, 1e-3 * DEPTH, "a fiftieth of a spacing: no row is gained or lost")
 RESTS = held(FASTEST, 0.05, "at rest: a thousandth of the speed of sound, 44 m/s")
+KEEPS = held(STANDS, 1e-3 * DEPTH, "a fiftieth of a spacing: the water does not sink into the ground")
+PRESSES = held(PORES, 9.81, "the weight of the millimetre by which the level may change")
 LIES = held(MOVED, 0.02 * SPACING, "a fiftieth of a spacing, as of water's level")
 ROUNDING = "round-off: both kicks of a step round every velocity, all one way: 2 eps a step"
 
@@ -149,7 +157,7 @@ ENDURANCES = Endurances([
     Endurance("ground", "200 particles of level ground rest",
               lambda: Tank(Simulation(ground()), SOIL), (exact(MASS), LIES, RESTS)),
     Endurance("ground under water", "100 particles of ground rest beneath water, for a fifth of the steps",
-              lambda: Tank(Simulation(wet_ground()), BOTH), (exact(MASS), exact(SOIL_MASS), STAYS, LIES, RESTS),
-              share=0.2),
+              lambda: Tank(Simulation(wet_ground()), BOTH),
+              (exact(MASS), exact(SOIL_MASS), STAYS, KEEPS, PRESSES, LIES, RESTS), share=0.2),
 ])  # fmt: skip
 """What `continuum-sph study endurance` runs."""

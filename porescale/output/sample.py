@@ -7,6 +7,10 @@ from porescale.common.core.types import AnyArray
 
 NOTHING = 1e-6
 """Share of fluid below which a point counts as solid: solid fractions are written in single precision."""
+OPEN = 0.5
+"""Solid fraction below which a cell tells the pressure at a surface: that of one nearly full is not the fluid's."""
+FLAT = 1e-9
+"""Of the weight of all cells: that of a plane without slope, which decides only where cells in a line say nothing."""
 
 
 class Sampler:
@@ -33,20 +37,58 @@ class Sampler:
         nx, ny = cells
         self._index = np.stack([((y + j) % ny) * nx + (x + i) % nx for j in (0, 1) for i in (0, 1)])  # (4, n)
         self._weight = np.stack([(sy if j else 1 - sy) * (sx if i else 1 - sx) for j in (0, 1) for i in (0, 1)])
+        self._low, self._share, self._cells, self._periodic = np.array((x, y)), np.array((sx, sy)), cells, periodic
 
     def of(self, values: AnyArray) -> AnyArray:
         """Interpolated ``values`` (ny, nx), (n,)."""
         return np.asarray((values.reshape(-1)[self._index] * self._weight).sum(axis=0))
 
     def in_fluid(self, values: AnyArray, solid: AnyArray) -> AnyArray:
-        """Interpolated ``values`` (ny, nx), (n,), weighted by the fluid share 1 - ``solid`` (ny, nx) of cells.
+        """``values`` (ny, nx) of the fluid, (n,), with the ``solid`` fraction (ny, nx) of cells.
 
-        Not a number where all four cells are solid: inside grains there is none.
+        Bilinear where all four cells are fluid.  At a surface, that of the plane through the open ones of the 16 cells
+        around the point which are joined to its four (least squares): exact for a plane, so of second order.  Where
+        none of the four is open, their mean by fluid share.  Not a number where all four are solid: inside grains there
+        is none.
         """
-        weight = self._weight * np.clip(1 - solid.reshape(-1)[self._index], 0, 1)
+        covered = solid.reshape(-1)[self._index]
+        weight = self._weight * np.clip(1 - covered, 0, 1)
         total = weight.sum(axis=0)
         value = (values.reshape(-1)[self._index] * weight).sum(axis=0)
-        return np.asarray(np.divide(value, total, out=np.full_like(value, np.nan, float), where=total > NOTHING))
+        value = np.divide(value, total, out=np.full_like(value, np.nan, float), where=total > NOTHING)
+        counts = self._weight > NOTHING
+        edge = np.flatnonzero(((covered > NOTHING) & counts).any(0) & ((covered < OPEN) & counts).any(0))
+        if len(edge):
+            value[edge] = self._plane(edge, values, solid)
+        return np.asarray(value)
+
+    def _plane(self, which: AnyArray, values: AnyArray, solid: AnyArray) -> AnyArray:
+        """Least squares over 4 x 4 cells about each point of the numbers ``which``, each with an open cell of four."""
+        around = np.arange(-1, 3)
+        (x, y), (sx, sy) = self._low[:, which, None] + around, self._share[:, which, None]
+        nx, ny = self._cells
+        inside = [self._periodic[a] | ((at >= 0) & (at < n)) for a, (at, n) in enumerate(((x, nx), (y, ny)))]
+        place = (y % ny)[:, :, None] * nx + (x % nx)[:, None, :]
+        covered = solid.reshape(-1)[place]
+        is_open = (covered < OPEN) & inside[1][:, :, None] & inside[0][:, None, :]
+        joined = np.zeros_like(is_open)
+        joined[:, 1:3, 1:3] = is_open[:, 1:3, 1:3]
+        for _ in range(4):  # from the middle to a corner, around a cell
+            grown = joined.copy()
+            grown[:, 1:] |= joined[:, :-1]
+            grown[:, :-1] |= joined[:, 1:]
+            grown[:, :, 1:] |= joined[:, :, :-1]
+            grown[:, :, :-1] |= joined[:, :, 1:]
+            joined = grown & is_open
+        dx, dy = around - sx, around - sy
+        near = (2 - np.abs(dy))[:, :, None] * (2 - np.abs(dx))[:, None, :]
+        weight = (joined * near * (1 - covered) ** 2).reshape(len(which), -1)
+        one = np.ones_like(place, float)
+        basis = np.stack([one, one * dx[:, None, :], one * dy[:, :, None]], -1).reshape(len(which), -1, 3)
+        normal = np.einsum("nk,nki,nkj->nij", weight, basis, basis)
+        normal += FLAT * weight.sum(1)[:, None, None] * np.diag([0.0, 1.0, 1.0])
+        right = np.einsum("nk,nk,nki->ni", weight, values.reshape(-1)[place].reshape(len(which), -1), basis)
+        return np.asarray(np.linalg.solve(normal, right[:, :, None])[:, 0, 0])
 
 
 def along(start: tuple[float, float], end: tuple[float, float], count: int) -> AnyArray:

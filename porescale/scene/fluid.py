@@ -30,7 +30,7 @@ class Fluid(Section):
     step: float | None = quantity("s", None, ge=1e-12, le=1e3, help="time step of the lattice")
     relaxation_time: float | None = quantity("", None, gt=0.5, le=1e3, help="relaxation time in steps")
     operator: str = pydantic.Field("trt", description="collision operator")
-    magic: float = quantity("", MAGIC_MIDWAY_WALL, ge=1e-6, le=1e3, help="magic parameter of operators that have one")
+    magic: float = quantity("", MAGIC_MIDWAY_WALL, ge=1e-6, le=1e3, help="magic parameter; 0.0417 for narrow gaps")
     smagorinsky: float | None = quantity(
         "", None, gt=0, le=1, help="Smagorinsky constant of an eddy viscosity (left out: none)"
     )

@@ -58,6 +58,38 @@ def test_pressure_is_that_of_the_fluid_share_and_none_inside_solid():
     assert read.of(values)[0] == pytest.approx((7 - 1000) / 2)  # the twin: plain interpolation takes the solid's
 
 
+def half_plane(rows, columns, wall):
+    """Fractions of what lies right of x = ``wall``, and a plane's values in cells that are fluid, far off elsewhere."""
+    y, x = np.mgrid[:rows, :columns] + 0.5
+    solid = np.clip(x + 0.5 - wall, 0, 1)
+    return solid, np.where(solid < 0.5, plane(x, y), -1000.0)
+
+
+@pytest.mark.parametrize("wall", [4.0, 4.3])
+def test_pressure_at_a_surface_is_that_of_the_plane_through_the_fluid_beside_it(wall):
+    solid, values = half_plane(6, 8, wall)
+    points = [(wall, 2.0), (wall, 3.4), (wall - 0.2, 2.9), (4.0, 0.5)]
+    found = Sampler(points, (8, 6), 1.0).in_fluid(values, solid)
+    # Slopes are pulled to zero by 1e-9 of them, over some two cells; round-off of values of 30 is a million times less.
+    assert found == pytest.approx([plane(*it) for it in points], abs=1e-7)
+    # The twin that must fail: the mean of the fluid of the four cells is that of half a cell off.
+    assert abs(plane(3.5, 2.0) - found[0]) > 1.0
+    # A plane along the wall alone can be seen where the fluid is a cell wide.
+    solid[:, :3] = 1.0
+    assert Sampler([(wall, 2.0)], (8, 6), 1.0).in_fluid(values, solid)[0] == pytest.approx(plane(3.5, 2.0), abs=1e-6)
+
+
+def test_pressure_at_a_surface_is_not_that_behind_a_plate():
+    # A plate two cells thick: behind it the pressure is another.
+    solid, values = np.zeros((6, 8)), np.ones((6, 8))
+    solid[:, 3:5], values[:, 5:], values[:, 3:5] = 1.0, 9.0, -1000.0
+    left, right = Sampler([(3.0, 3.0), (5.0, 3.0)], (8, 6), 1.0).in_fluid(values, solid)
+    assert (left, right) == pytest.approx((1.0, 9.0), rel=1e-7)
+    # The twin: with a hole of one cell beside it the sides are joined, and the plane goes through both.
+    solid[2, 3:5], values[2, 3:5] = 0.0, 5.0
+    assert Sampler([(3.4, 2.5)], (8, 6), 1.0).in_fluid(values, solid)[0] > 1.5
+
+
 def test_points_of_lines_and_sections():
     assert along((0, 0), (2, 4), 3).tolist() == [[0, 0], [1, 2], [2, 4]]
     assert midpoints((0, 0), (0, 4), 2).tolist() == [[0, 1], [0, 3]]

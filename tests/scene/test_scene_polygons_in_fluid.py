@@ -10,11 +10,11 @@ from porescale.common.core.errors import InputError
 from tests.reference.scenes import column, grain
 
 SQUARE = {"sides": 4, "diameter": 0.0014, "thickness": 2e-5, "at": [[0.004, 0.005]], "angle": [0.3]}
-WATER = {"gate": None, "grains__packing": None, "domain__top": "wall"}
+WATER = {"gate": None, "grains__packing": None, "grains__hydraulic_radius_ratio": 1, "domain__top": "wall"}
 
 
 def wet(*polygons, **changes):
-    return column(**WATER, polygon=list(polygons), **changes)
+    return column(**WATER | {"polygon": list(polygons)} | changes)
 
 
 def faults(*polygons, **changes):
@@ -78,7 +78,23 @@ def test_what_is_no_convex_polygon_is_dry():
     said = faults(arrow)
     assert "polygon[0]" in said
     assert "cut it into convex polygons" in said
-    assert "no films between polygons" in faults(SQUARE, lubrication={})
+
+
+def test_what_discs_alone_have_is_refused_of_polygons_with_the_reason():
+    said = faults(SQUARE, lubrication={})
+    assert "lubrication has no films between polygons: what the lattice lacks was measured" in said
+    # The radius that the fluid sees is of discs; with discs it is theirs.
+    beside = {"grains__hydraulic_radius_ratio": 0.8, "grains__grain": [grain(0.008, 0.005)]}
+    said = faults(SQUARE, grains__hydraulic_radius_ratio=0.8)
+    assert "grains.hydraulic_radius_ratio is of discs: the fluid sees a polygon's outline" in said
+    assert "choose polygon.thickness" in said
+    derive(wet(SQUARE, **beside))
+    # A rim is softened by its radius: asked for, or by the operator's default.
+    assert "fluid.rim softens discs alone" in faults(SQUARE, fluid__rim="soft")
+    assert "fluid.rim is soft with 'central'" in faults(SQUARE, fluid__operator="central")
+    derive(wet(SQUARE, fluid__operator="central", fluid__rim="sharp"))
+    # The twin: none of it is refused where there is no polygon.
+    derive(column(**WATER | beside | {"fluid__rim": "soft", "lubrication": {}}))
 
 
 def test_a_plate_of_one_cell_is_warned_of():

@@ -1,4 +1,7 @@
-"""Polygons in fluid, as scenes have them: convex, resolved by the cells, without films."""
+"""Polygons in fluid, as scenes have them: convex, resolved by the cells, without films, soft rims or a ratio of radii.
+
+Why is in docs/theory/shapes.md.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from porescale.builders.initial.fluid_options import has_soft_rim
 from porescale.common.core.errors import Fault, InputError
 from porescale.coupling.coverage.polygon import convex, least_width
 
@@ -41,8 +45,25 @@ def check_in_fluid(scene: Scene, frames: Sequence[str]) -> list[Fault]:
             convex(each.points, f"polygon[{k}]")
         except InputError as error:
             faults += error.faults
-    if scene.polygon and scene.lubrication:
-        faults.append(Fault("lubrication", None, "has no films between polygons", repair="leave it out"))
+    return faults + (_what_discs_alone_have(scene) if scene.polygon else [])
+
+
+def _what_discs_alone_have(scene: Scene) -> list[Fault]:
+    """The faults of films, soft rims and a hydraulic radius beside polygons, which have none of them."""
+    faults, grains = [], scene.grains
+    if scene.lubrication:
+        problem = "has no films between polygons: what the lattice lacks was measured between round surfaces"
+        faults.append(Fault("lubrication", None, problem, repair="leave it out, polygon.thickness keeps a gap open"))
+    if scene.fluid and has_soft_rim(scene.fluid):
+        problem = f"is soft with {scene.fluid.operator!r}" if scene.fluid.rim is None else "softens discs alone"
+        problem += ": how far a rim is drawn in follows the radius, which a polygon has not"
+        faults.append(Fault("fluid.rim", scene.fluid.rim, problem, "", "'sharp'"))
+    discs = grains and (grains.packing or grains.grain or grains.circles or scene.clump)
+    if grains and (grains.hydraulic_radius_ratio or 1.0) < 1.0 and not discs:
+        problem = "is of discs: the fluid sees a polygon's outline, without the thickness of its sides"
+        repair = "choose polygon.thickness: in the fluid sides that touch stand two of them apart"
+        key = "grains.hydraulic_radius_ratio"
+        faults.append(Fault(key, grains.hydraulic_radius_ratio, problem, "", "1", repair))
     return faults
 
 

@@ -65,7 +65,8 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
     try:
         with printed():
             result = app(list(sys.argv[1:] if tokens is None else tokens))
-        sys.stdout.flush()
+        if sys.stdout is not None:  # closed by who started the command
+            sys.stdout.flush()
         return result if isinstance(result, int) else 0
     except CycloptsError as error:
         _say(f"{app.name[0]}: {error}")

@@ -4,10 +4,14 @@ import os
 import shutil
 import sys
 import time
+import warnings
 from pathlib import Path
 
+import pytest
+
 from porescale.common.compiled import jit
-from porescale.common.compiled.cache import DAY, cache_root, hash_of, keep_only_used
+from porescale.common.compiled.cache import DAY, ROOM, cache_root, hash_of, keep_only_used, writable
+from porescale.common.core.errors import PorescaleWarning
 from tests.reference.folders import ROOT
 from tests.reference.waiting import done
 
@@ -18,12 +22,18 @@ def aged(path: Path, days: float) -> Path:
     return path
 
 
-def printed(command: str, home: Path, kernels: object = "") -> str:
-    """What a new Python process prints whose caches are below ``home``, its kernels in ``kernels``, if named."""
+def said(command: str, home: Path, kernels: object = "") -> tuple[str, str]:
+    """What a new Python process prints whose caches are below ``home``, its kernels in ``kernels``, if named; and what
+    it warns of."""
     environment = {**os.environ, "XDG_CACHE_HOME": str(home), "NUMBA_CACHE_DIR": str(kernels)}
     ended = done([sys.executable, "-c", command], env=environment, cwd=ROOT)
     assert ended.returncode == 0, ended.stderr
-    return ended.stdout
+    return ended.stdout, ended.stderr
+
+
+def printed(command: str, home: Path, kernels: object = "") -> str:
+    """The first of these."""
+    return said(command, home, kernels)[0]
 
 
 def test_the_cache_lies_where_the_desktop_standard_says_and_an_empty_variable_counts_as_unset(monkeypatch, tmp_path):
@@ -104,7 +114,34 @@ def test_kernels_work_where_no_cache_can_be_written(tmp_path):
     command = "from porescale.common.neighbors.cells import minimum_image as k; "
     command += "print(k(0.9, 1.0), type(k._cache).__name__)"
     for place, cache in (("file", "NullCache"), ("folder", "KernelCache")):  # the second is the twin
-        value, kind = printed(command, tmp_path / place).split()
+        text, warned = said(command, tmp_path / place)
+        value, kind = text.split()
         assert abs(float(value) + 0.1) < 1e-15  # one rounding of 0.9 - 1
         assert kind == cache
+        assert warned.count("compiled kernels cannot be kept there (Not a directory)") == (place == "file")
     assert (tmp_path / "file").read_text() == "in the way"
+
+
+def test_why_kernels_are_not_kept_is_said(tmp_path, monkeypatch):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert writable(tmp_path / "made")  # the twin: nothing is said
+    with pytest.warns(PorescaleWarning, match="the user has no home folder.*NUMBA_CACHE_DIR"):
+        assert not writable(Path(os.devnull) / "porescale" / "kernels")
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "access", lambda *_: False)  # as for a folder that others may write
+        with pytest.warns(PorescaleWarning, match="Permission denied"):
+            assert not writable(tmp_path / "made")
+    usage = shutil.disk_usage(tmp_path)
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: usage._replace(free=ROOM - 1))
+    with pytest.warns(PorescaleWarning, match="less than 32 MiB are free"):
+        assert not writable(tmp_path / "made")
+
+
+def test_without_a_home_there_is_no_place_for_a_cache(monkeypatch):
+    def unknown():
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(Path, "home", unknown)
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    assert Path(os.devnull) in cache_root().parents

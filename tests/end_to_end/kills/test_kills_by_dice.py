@@ -5,9 +5,12 @@ import json
 import os
 import sys
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
+from porescale.common.compiled import jit
+from tests.reference.faults import killing
 from tests.reference.faults.killing import COLD_PATIENCE, SCENES
 from tests.reference.folders import ROOT
 from tests.reference.waiting import done
@@ -22,6 +25,16 @@ def killed(place: Path, *words: object) -> dict:
     ended = done(command, 2 * COLD_PATIENCE, cwd=ROOT)  # a child that hangs is told of earlier
     assert ended.returncode == 0, f"seed {SEED}: {ended.stderr[-2000:]}"
     return json.loads((place / "kills.json").read_text())
+
+
+def test_that_a_kernel_is_kept_is_seen(tmp_path):
+    marks, phase = killing.Marks(tmp_path / "marks"), killing.PHASES.index("keeping a kernel")
+    for where, name, doing in killing.hooks():
+        if doing == "keeping a kernel":
+            with patch.object(where, name, killing.marked(marks, doing, getattr(where, name))):
+                vars(jit.compiler())["_Files"](str(tmp_path), "", "").save("a", 1)
+    assert marks.begun(phase) == 1
+    assert [file.name for file in tmp_path.glob("*.nbc")] == ["a.nbc"]  # what a cold campaign throws away
 
 
 @pytest.mark.slow

@@ -34,6 +34,7 @@ os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
 from porescale.common.record.checkpoint import read_header
 from porescale.common.schema.sections import load
+from tests.reference.faults import campaigns
 from tests.reference.faults.failing_disk import whole
 from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
@@ -123,12 +124,20 @@ def marked(marks: Marks, name: str, real: Callable[..., Any]) -> Callable[..., A
     return call
 
 
-def run(package_name: str, words: list[str], marks: Marks, pictured: bool = True) -> int:
-    """Exit code of a command line, which says what it does."""
+def hooks() -> list[tuple[Any, str, str]]:
+    """What is called in a phase: where it stands, its name, and the phase."""
     from numba.core import caching, dispatcher
 
-    from porescale.common.cli.application import application, main
     from porescale.common.record import record, snapshots
+
+    return [(record.Record, "row", "row"), (record.Record, "snapshot", "snapshot"), (record.Record, "save",
+            "checkpoint"), (snapshots, "assemble", "joining"), (dispatcher._FunctionCompiler, "compile", "compiling"),
+            (caching.IndexDataCacheFile, "_save_data", "keeping a kernel")]  # fmt: skip
+
+
+def run(package_name: str, words: list[str], marks: Marks, pictured: bool = True) -> int:
+    """Exit code of a command line, which says what it does."""
+    from porescale.common.cli.application import application, main
 
     package = _package(package_name)
 
@@ -149,10 +158,7 @@ def run(package_name: str, words: list[str], marks: Marks, pictured: bool = True
         marks.begin(PHASES.index("ending"))  # between the others: reading a checkpoint, ending a run
         return package.drive(*args, **named)
 
-    hooks = [(record.Record, "row", "row"), (record.Record, "snapshot", "snapshot"), (record.Record, "save",
-             "checkpoint"), (snapshots, "assemble", "joining"), (dispatcher._FunctionCompiler, "compile", "compiling"),
-             (caching.IndexDataCacheFile, "save", "keeping a kernel")]  # fmt: skip
-    patches = [patch.object(where, name, marked(marks, phase, getattr(where, name))) for where, name, phase in hooks]
+    patches = [patch.object(where, name, marked(marks, phase, getattr(where, name))) for where, name, phase in hooks()]
     for each in patches:
         each.start()
     shown = marked(marks, "pictures", package.show) if pictured else lambda folder: []
@@ -274,7 +280,7 @@ class Campaign:
     def forget(self, cold: Path) -> None:
         """Remove a share of the kernels, and what else was kept."""
         share = self.dice.random()
-        for kept in sorted((cold / "kernels").rglob("*.nbi")):
+        for kept in sorted((cold / "kernels").rglob("*.nbc")):
             if self.dice.random() < share:
                 kept.unlink()
         shutil.rmtree(cold / "porescale", ignore_errors=True)
@@ -347,6 +353,7 @@ def main() -> int:
     parser.add_argument("--cold", type=int, default=0, help="of these from nothing")
     parser.add_argument("--stops", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--record", action="store_true", help="keep what it came to in docs/develop")
     parser.add_argument("--out", type=Path, default=Path("runs/kills"))
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
     options = parser.parse_args()
@@ -368,6 +375,9 @@ def main() -> int:
         (options.out / "kills.json").write_text(
             json.dumps({"seed": options.seed, "kills": count, "scenes": done}, indent=1)
         )
+        if options.record:
+            every = sum((each.kills for each in all_of.values()), Counter())
+            campaigns.record(f"kills of {', '.join(options.scenes)}", options.seed, every, 0)
         print(f"{count} of {options.kills} kills", file=sys.stderr, flush=True)
     stops = []
     while len(stops) < options.stops:

@@ -105,6 +105,11 @@ def test_printed_operators_and_exact_walls_without_shift_or_correction_fail_on_a
     assert found.error > 1.5 * tolerance("coupling.dense_square_array")
 
 
+def test_the_parameter_of_plane_walls_fails_on_dense_arrays():
+    found = lab.square((0.5,), (1.0,), np.inf, count=2)
+    assert found.error > 1.3 * tolerance("coupling.dense_square_arrays_at_this_parameter")
+
+
 def test_near_one_half_too_the_shift_is_needed(monkeypatch):
     without_shift(monkeypatch)
     found = lab.square((0.3,), (0.52,), np.inf, count=1)

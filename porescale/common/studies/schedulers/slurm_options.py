@@ -57,8 +57,8 @@ def _minutes(value: str) -> dict[str, Any]:
     """A time limit."""
     try:
         found = to_si(value, "s") / 60
-    except ValueError as error:
-        raise ValueError(f"time={value} {error}; write it as 90min, 2h or 3d") from None
+    except ValueError:
+        raise ValueError(f"time={value} is no time; write it as 90min, 2h or 3d") from None
     if found < SHORTEST:
         raise ValueError(f"time={value} is less than {SHORTEST:g}min")
     return {"time": math.ceil(found)}
