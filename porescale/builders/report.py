@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from porescale.analysis.permeability import bed_of_spheres, gebart, kozeny_carman, ratio_for
 from porescale.builders.checks.clear_packing import require_clear_packing
 from porescale.builders.checks.device import device_of
-from porescale.builders.cost import expected_seconds, memory, require_memory, seconds_on_gpu, snapshot_bytes
+from porescale.builders.cost import (
+    expected,
+    expected_seconds,
+    memory,
+    require_memory,
+    seconds_on_gpu,
+    snapshot_bytes,
+    snapshot_count,
+)
 from porescale.builders.derive import Derived, derive
 from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
 from porescale.builders.initial.random_polygons import copies_of
@@ -255,17 +263,25 @@ def _device(derived: Derived, steps: int, on_cpu: float, out: Report) -> float:
 
 def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     steps = max(1, round(scene.time.end / derived.model_step))
-    seconds, measured = expected_seconds(derived, steps)
+    snapshots = snapshot_count(scene.time.end, scene.output.snapshot_interval)
+    told = expected(derived, steps, snapshots)
+    seconds = told.total
     out.heading("Cost")
     out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
     out.row("memory", memory(derived) / 2**20, "MiB")
-    known = (
-        "by this machine's last runs of such scenes" if measured else "a guess until this machine has done such a run"
-    )
+    guess = "a guess until this machine has done such a run"
+    known = "by this machine's last runs of such scenes" if told.measured else guess
     on_gpu = device_of(scene) == "gpu" and derived.cells is not None
-    out.row("time on the CPU" if on_gpu else "time", seconds, "s", known)
     if on_gpu:
-        seconds = _device(derived, steps, seconds, out)
+        out.row("time on the CPU", told.steps, "s", known)
+        seconds = _device(derived, steps, told.steps, out)
+    else:
+        out.row("time", seconds, "s", known)
+        out.row("of it compiling", told.compiling, "s", "kernels that are not kept on disk")
+        out.row("of it steps", told.steps, "s")
+        out.row(
+            "of it the rest", seconds - told.compiling - told.steps, "s", "start, packing, files, pictures and film"
+        )
     if seconds > WEEK:
         out.warn(
             f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "
