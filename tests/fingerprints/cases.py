@@ -25,6 +25,7 @@ SCENES: dict[str, tuple[str, int, str | None, tuple[str, ...]]] = {
     "hydrostatic_column/scene.toml": (CONTINUUM, 200, "draft", ()),
     "lid_driven_cavity/scene.toml": (GRAINS, 400, "draft", ()),
     "lifting_gate/scene.toml": (GRAINS, 200, "draft", ()),
+    "loose_and_dense_collapse/scene.toml": (GRAINS, 60, "draft", ("gate.opens_at=0.001",)),
     "own_law/scene.toml": (GRAINS, 2000, None, ()),
     "permeameter/scene.toml": (GRAINS, 80, "draft", ()),
     "levee_by_suction/scene.toml": (CONTINUUM, 100, "draft", ()),
@@ -78,7 +79,9 @@ NO_SUBJECT = {
     "column_collapse_table1/implied.py": "draws the numbers of a refusal",
     "column_collapse_table1/scene.toml": "is there to be refused",
     "collapsing_water_column/trade.toml": "of a study, not a scene",
+    "column_collapse/lambda.py": "runs the scene beside it",
     "column_collapse/trade.toml": "of a study, not a scene",
+    "loose_and_dense_collapse/compare.py": "runs the scene beside it",
     "micro_to_macro/material.toml": "read by ground.toml",
     "own_law/laws.py": "named by the scene beside it",
 }

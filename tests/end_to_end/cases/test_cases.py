@@ -106,8 +106,8 @@ def test_every_expectation_is_complete_and_reasoned(case):
 
 @pytest.mark.parametrize(
     "case",
-    ["column_collapse", "column_collapse_table1", "column_collapse_tank", "own_law", "settling_disc",
-     "tipping_tray", *sorted([*FLOWS, *MOVED])],
+    ["column_collapse", "column_collapse_table1", "column_collapse_tank", "loose_and_dense_collapse", "own_law",
+     "settling_disc", "tipping_tray", *sorted([*FLOWS, *MOVED])],
 )  # fmt: skip
 def test_every_case_says_what_it_is_and_how_to_run_it_and_shows_it(case):
     text = (CASES / case / "README.md").read_text(encoding="utf-8")
@@ -239,9 +239,34 @@ def test_a_bed_lets_through_in_a_run_what_its_permeability_says(porescale, tmp_p
     assert bed["steady ()"].all()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("settle", "off"),
+    [
+        ("true", set()),
+        ("false", {"solid fraction at the start", "suction under the column", "half a length gone", "run-out",
+                   "height at the wall"}),
+    ],
+)  # fmt: skip
+def test_a_dense_column_waits_under_suction_and_a_loose_one_does_not(porescale, tmp_path, settle, off):
+    # The second row is the twin that must fail: the same grains, placed loosely, flow out at once under overpressure.
+    settings = (f"grains.packing.settle={settle}", "output.snapshot_interval=0.9", "output.report=false")
+    run(porescale, "loose_and_dense_collapse", tmp_path / "out", *settings)
+    assert missed_by(tmp_path / "out", "loose_and_dense_collapse") == off
+
+
 def test_no_case_is_left_out():
     assert scenes_of(PORESCALE) == sorted(
-        ["column_collapse", "column_collapse_tank", "own_law", "settling_disc", "tipping_tray", *FLOWS, *MOVED]
+        [
+            "column_collapse",
+            "column_collapse_tank",
+            "loose_and_dense_collapse",
+            "own_law",
+            "settling_disc",
+            "tipping_tray",
+            *FLOWS,
+            *MOVED,
+        ]
     )  # each has a test of its own here
     assert sorted([*scenes_of(PORESCALE), *scenes_of(CONTINUUM)]) == [path.parent.name for path in FILES]
 

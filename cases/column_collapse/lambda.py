@@ -1,0 +1,131 @@
+"""The hydraulic radius ratio over resolution and packing: lambda.png, and a table of how far the column has fallen.
+
+    python cases/column_collapse/lambda.py --packings 3 --levels draft standard
+
+Every run is kept in the folder, so that a call that was stopped goes on; what was not run is left out of the table.
+"""
+
+import argparse
+import datetime
+import json
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import porescale as ps
+
+HERE = Path(__file__).resolve().parent
+README = HERE / "README.md"
+RATIOS = (0.7, 0.8, 0.87, 0.9)
+END, EVERY = 0.5, 0.01  # s: the fall and the tongue; between rows
+HIGH, LOW = 0.036, 0.0102  # m, of the centre of mass: where it starts, where it ends
+SHOWN = (0.25, 0.5)  # s
+
+Rows = list[list[float]]
+"""Time (s), height of the centre of mass (m), front (m)."""
+
+
+def run(level: str, ratio: float, seed: int) -> Rows:
+    """One collapse up to END."""
+    changes = {"grains.hydraulic_radius_ratio": ratio, "grains.packing.seed": seed, "time.end": END}
+    sim = ps.build(ps.load(HERE / "scene.toml", quality=level).with_(changes))
+    steps, rows = round(EVERY / sim.step_seconds), []
+    while True:
+        it = sim.series()
+        rows.append([it["time (s)"], it["centre of mass y (m)"], it["front (m)"]])
+        if sim.time > END - 0.5 * EVERY:
+            return rows
+        sim.advance(steps)
+
+
+def half(rows: Rows) -> float:
+    """When half of the fall is done, s; infinite where it is not by the end."""
+    time, height, _ = np.array(rows).T
+    return float(time[height <= 0.5 * (HIGH + LOW)][0]) if height[-1] <= 0.5 * (HIGH + LOW) else float("inf")
+
+
+def spread(values: list[float], unit: float, digits: int) -> str:
+    """Mean and deviation of one packing in a unit; how many are beyond the end, where some are."""
+    found = np.array([it for it in values if np.isfinite(it)]) / unit
+    if not len(found):
+        return f"> {END}"
+    bar = f" ± {found.std(ddof=1):.{digits}f}" if len(found) > 1 else ""
+    late = f" ({len(values) - len(found)} of {len(values)} > {END})" if len(found) < len(values) else ""
+    return f"{found.mean():.{digits}f}{bar}{late}"
+
+
+def table(runs: dict[tuple[str, float], list[Rows]]) -> list[str]:
+    """Lines of a table, a row for each level and ratio; ± is the deviation of one packing."""
+    head = (
+        "level",
+        "λ",
+        "packings",
+        "half of the fall, s",
+        "fallen at 0.25 s, %",
+        "at 0.5 s, %",
+        "front's way then, %",
+    )
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    for (level, ratio), many in sorted(runs.items()):
+        fallen = [[100.0 * (HIGH - np.interp(t, *np.array(one).T[:2])) / (HIGH - LOW) for one in many] for t in SHOWN]
+        front = [100.0 * (0.09 - one[-1][2]) / 0.09 for one in many]
+        cells = [spread([half(one) for one in many], 1.0, 2), *(spread(it, 1.0, 0) for it in (*fallen, front))]
+        lines.append(f"| {level} | {ratio:g} | {len(many)} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def draw(runs: dict[tuple[str, float], list[Rows]], path: Path) -> None:
+    """Centre of mass over time, a panel for each level, a band of packings for each ratio."""
+    levels = sorted({level for level, _ in runs})
+    figure = Figure(figsize=(4.6 * len(levels) + 1.0, 3.8), layout="constrained")
+    for k, level in enumerate(levels):
+        ax = figure.add_subplot(1, len(levels), k + 1)
+        for number, ratio in enumerate(RATIOS):
+            for j, rows in enumerate(runs.get((level, ratio), [])):
+                time, height, _ = np.array(rows).T
+                ax.plot(time, 100.0 * height, color=f"C{number}", lw=1.0, label=f"λ = {ratio:g}" if j == 0 else None)
+        ax.axhline(50.0 * (HIGH + LOW), color="0.6", ls=":")
+        ax.set(xlabel="time (s)", ylabel="centre of mass (cm)", title=level, ylim=(1.0, 3.7))
+        ax.grid(alpha=0.3)
+        ax.legend()
+    figure.savefig(path, dpi=90)
+
+
+def write(runs: dict[tuple[str, float], list[Rows]]) -> None:
+    """Picture and table, with the date, into this folder: between the marks of the README."""
+    draw(runs, HERE / "lambda.png")
+    head, _, rest = README.read_text(encoding="utf-8").partition("<!-- lambda -->")
+    tail = rest.partition("<!-- end of lambda -->")[2]
+    made = "Made on " + datetime.date.today().isoformat() + " by `lambda.py`."
+    block = "\n".join(["<!-- lambda -->", *table(runs), "", made, "<!-- end of lambda -->"])
+    README.write_text(head + block + tail, encoding="utf-8")
+
+
+def main() -> None:
+    """Run what is not there yet, write the picture, print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--packings", type=int, default=3)
+    parser.add_argument("--levels", nargs="+", default=["draft", "standard"])
+    parser.add_argument("--out", type=Path, default=Path("runs/column_collapse_lambda"), help="folder")
+    parser.add_argument("--kept", action="store_true", help="run none, show what is there")
+    parser.add_argument("--write", action="store_true", help="picture and table into the README of the case")
+    asked = parser.parse_args()
+    asked.out.mkdir(parents=True, exist_ok=True)
+    runs: dict[tuple[str, float], list[Rows]] = {}
+    for level, seed, ratio in product(asked.levels, range(1, asked.packings + 1), RATIOS):
+        file = asked.out / f"{level}-{ratio}-{seed}.json"
+        if not file.exists() and not asked.kept:
+            file.write_text(json.dumps(run(level, ratio, seed)), encoding="utf-8")
+            print(f"{level}, lambda {ratio}, packing {seed}: done", flush=True)
+        if file.exists():
+            runs.setdefault((level, ratio), []).append(json.loads(file.read_text(encoding="utf-8")))
+    draw(runs, asked.out / "lambda.png")
+    if asked.write:
+        write(runs)
+    print("\n".join(table(runs)))
+
+
+if __name__ == "__main__":
+    main()

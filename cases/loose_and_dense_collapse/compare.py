@@ -1,0 +1,201 @@
+"""Dense, medium and loose columns over several packings, beside the experiment: compare.json, compare.png, a table.
+
+    python cases/loose_and_dense_collapse/compare.py --packings 3
+
+Every run is kept in the folder, so that a call that was stopped goes on.  Lengths are over the column's length,
+pressures over its buoyant weight on the base, times over sqrt(H/g), H its height.
+"""
+
+import argparse
+import datetime
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import porescale as ps
+
+HERE = Path(__file__).resolve().parent
+MADE: dict[str, dict[str, Any]] = {
+    "dense": {},
+    "medium": {"grains.packing.settling_friction": 1.0},
+    "loose": {"grains.packing.settle": False},
+}
+"""The three beds, by what each changes in the scene."""
+COLOURS = {"dense": "tab:blue", "medium": "tab:green", "loose": "tab:red"}
+LENGTH = 0.024  # m, of the column
+BINS = 48  # of the final shape, a column of two diameters each
+EVERY = 1 / 400  # s between rows
+SMOOTH = 20  # rows, of the pore pressure: 0.05 s, ten times what sound takes through the column
+HYDROSTATIC = 1000.0 * ps.GRAVITY * (0.026 - 0.002)  # Pa, at the probe
+
+# Rondon, Pouliquen & Aussillous (2011), as digitised by the authors of SedFoam (tutorials/Py/DATA/Rondon2012 of its
+# repository), rounded to what a figure gives.  Columns of 6 cm: 4.2 cm at a solid fraction of 0.60, 4.8 cm at 0.55.
+EXPERIMENT: dict[str, dict[str, Any]] = {
+    "dense": {
+        "height": 0.042, "fraction": 0.60,
+        "time": [0.55, 1.2, 1.9, 2.5, 3.1, 3.8, 4.4, 5.0, 6.2, 7.5, 8.7, 10.0],
+        "front": [8.8, 8.4, 9.3, 9.5, 9.8, 10.4, 11.2, 11.5, 12.1, 12.0, 12.1, 12.1],
+        "pressure time": [1.1, 2.0, 3.4, 6.2, 7.3, 8.7, 10.4, 13.2, 16.9, 20.8, 25.4, 29.0],
+        "pressure": [-126, -64, -52, -52, -57, -41, -28, -19, -8, -7, -7, 0],
+        "x": [0.4, 1.6, 2.2, 2.7, 3.2, 3.6, 4.1, 5.0, 6.0, 6.8, 8.0, 9.3, 10.3, 11.3, 12.0],
+        "y": [4.22, 4.17, 4.04, 3.75, 3.46, 3.13, 2.94, 2.55, 1.93, 1.56, 1.17, 0.76, 0.49, 0.31, 0.10],
+    },
+    "loose": {
+        "height": 0.048, "fraction": 0.55,
+        "time": [0.09, 0.64, 1.3, 1.9, 2.6, 3.2, 3.9, 4.5, 5.9],
+        "front": [6.9, 16.3, 19.7, 20.3, 20.7, 21.0, 21.2, 21.2, 21.2],
+        "pressure time": [1.1, 2.0, 3.4, 4.5, 5.9, 8.2, 10.7, 13.0, 15.2, 20.0, 24.8],
+        "pressure": [133, 144, 126, 104, 82, 51, 38, 22, 8, 3, 0],
+        "x": [0.1, 0.9, 2.2, 3.2, 4.3, 5.4, 6.4, 7.6, 9.3, 11.1, 12.9, 14.3, 16.5, 18.3, 20.4],
+        "y": [2.62, 2.44, 2.36, 2.36, 2.20, 2.05, 1.89, 1.74, 1.58, 1.37, 1.17, 0.96, 0.70, 0.47, 0.10],
+    },
+}  # fmt: skip
+LIQUID, BEADS = 1010.0, 2500.0  # kg/m3
+
+
+def run(made: str, seed: int) -> dict[str, Any]:
+    """One column: its numbers at the start, rows of time, front, height and pore pressure, and its shape at the end."""
+    scene = ps.load(HERE / "scene.toml").with_({**MADE[made], "grains.packing.seed": seed})
+    sim, rows = ps.build(scene), []
+    steps = round(EVERY / sim.step_seconds)
+    fraction = 1.0 - next(value for name, value in sim.tables()["regions"].items() if "porosity" in name)
+    while True:
+        series, probe = sim.series(), sim.tables()["probes"]
+        pressure = next(value for name, value in probe.items() if "mean pressure" in name)
+        rows.append([series["time (s)"], series["front (m)"], series["highest grain (m)"], pressure])
+        if sim.time >= scene.time.end - 0.5 * EVERY:
+            break
+        sim.advance(steps)
+    tops = np.zeros(BINS)
+    columns = np.minimum((sim.positions[:, 0] / scene.domain.width * BINS).astype(int), BINS - 1)
+    np.maximum.at(tops, columns, sim.positions[:, 1] + sim.radii)
+    return {"fraction": float(fraction), "rows": np.array(rows).tolist(), "tops": tops.tolist()}
+
+
+def numbers(one: dict[str, Any]) -> dict[str, float]:
+    """What is compared of a run: lengths over the column's, pressure over its weight on the base, times over sqrt(H/g);
+    weight on the base (Pa) and that time (s)."""
+    time, front, top, pressure = np.array(one["rows"]).T
+    height, excess = top[0], np.convolve(pressure - HYDROSTATIC, np.full(SMOOTH, 1.0 / SMOOTH), "valid")
+    weight, fall = 1500.0 * ps.GRAVITY * one["fraction"] * height, float(np.sqrt(height / ps.GRAVITY))
+    gone = (front - LENGTH) / LENGTH
+    half = time[gone >= 0.5]
+    return {
+        "solid fraction": one["fraction"],
+        "pore pressure": float(excess[np.abs(excess).argmax()] / weight),
+        "half a length": float(half[0] / fall) if len(half) else float("inf"),
+        "run-out": float(gone[-1]),
+        "height": float(top[-1] / height),
+        "fall": fall, "weight": weight,
+    }  # fmt: skip
+
+
+def observed(made: str) -> dict[str, float]:
+    """The same numbers of the experiment, the pressure where it is largest."""
+    it = EXPERIMENT[made]
+    weight, fall = scales(it)
+    gone = (np.array(it["front"]) - 6.0) / 6.0
+    pressure = np.array(it["pressure"])
+    return {
+        "solid fraction": it["fraction"],
+        "pore pressure": float(pressure[np.abs(pressure).argmax()] / weight),
+        "half a length": float(np.interp(0.5, gone, it["time"]) / fall),
+        "run-out": float(gone[-1]), "height": float(max(it["y"]) / (100.0 * it["height"])),
+    }  # fmt: skip
+
+
+def scales(it: dict[str, Any]) -> tuple[float, float]:
+    """Weight on the base (Pa) and sqrt(H/g) (s) of an experiment."""
+    height = float(it["height"])
+    return (BEADS - LIQUID) * ps.GRAVITY * it["fraction"] * height, float(np.sqrt(height / ps.GRAVITY))
+
+
+def draw(runs: dict[str, list[dict[str, Any]]], path: Path) -> None:
+    """Front and pore pressure over time, and shapes at the end, with the experiment as circles."""
+    figure = Figure(figsize=(11, 7.5), layout="constrained")
+    axes: list[Axes] = [figure.add_subplot(2, 2, k) for k in (1, 2)] + [figure.add_subplot(2, 1, 2)]
+    for made, many in runs.items():
+        for k, one in enumerate(many):
+            it, label = numbers(one), f"{made}, {one['fraction']:.3f}" if k == 0 else None
+            time, front, _, pressure = np.array(one["rows"]).T
+            line = {"color": COLOURS[made], "lw": 1.0, "label": label}
+            axes[0].plot(time / it["fall"], front / LENGTH, **line)
+            axes[1].plot(time / it["fall"], (pressure - HYDROSTATIC) / it["weight"], **line)
+            places = (np.arange(BINS) + 0.5) / BINS * 0.096 / LENGTH
+            axes[2].plot(places, np.array(one["tops"]) / LENGTH, **line)
+        if made in EXPERIMENT:
+            it, hollow = EXPERIMENT[made], {"color": COLOURS[made], "marker": "o", "mfc": "none", "ls": "none"}
+            weight, fall = scales(it)
+            axes[0].plot(np.array(it["time"]) / fall, np.array(it["front"]) / 6.0, **hollow)
+            axes[1].plot(np.array(it["pressure time"]) / fall, np.array(it["pressure"]) / weight, **hollow)
+            axes[2].plot(np.array(it["x"]) / 6.0, np.array(it["y"]) / 6.0, **hollow, label=f"{made}, experiment")
+    for ax, x, y in (
+        (axes[0], "time / √(H/g)", "front / length of the column"),
+        (axes[1], "time / √(H/g)", "pore pressure above hydrostatic / weight on the base"),
+        (axes[2], "x / length of the column", "height / length of the column"),
+    ):
+        ax.set(xlabel=x, ylabel=y)
+        ax.grid(alpha=0.3)
+    for ax in axes[:2]:
+        ax.set_xscale("log")
+        ax.set_xlim(0.5, 500.0)
+    axes[2].set_aspect("equal")
+    axes[2].legend(fontsize=8)
+    figure.savefig(path, dpi=90)
+
+
+def table(runs: dict[str, list[dict[str, Any]]]) -> list[str]:
+    """Lines of a table: means over packings with the deviation of one, beside the experiment."""
+    names = ("solid fraction", "pore pressure", "half a length", "run-out", "height")
+    lines = ["| | packings | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
+    for made, many in runs.items():
+        found = {name: np.array([numbers(one)[name] for one in many]) for name in names}
+        cells = [f"{v.mean():.3g}" + (f" ± {v.std(ddof=1):.1g}" if len(v) > 1 else "") for v in found.values()]
+        lines.append(f"| {made} | {len(many)} | " + " | ".join(cells) + " |")
+        if made in EXPERIMENT:
+            lines.append(f"| experiment, {made} | | " + " | ".join(f"{v:.3g}" for v in observed(made).values()) + " |")
+    return lines
+
+
+def write(runs: dict[str, list[dict[str, Any]]]) -> None:
+    """Picture and table, with the date, into this folder: between the marks of the README."""
+    draw(runs, HERE / "compare.png")
+    readme = HERE / "README.md"
+    head, _, rest = readme.read_text(encoding="utf-8").partition("<!-- compare -->")
+    tail = rest.partition("<!-- end of compare -->")[2]
+    made = "Made on " + datetime.date.today().isoformat() + " by `compare.py`, quality draft."
+    block = "\n".join(["<!-- compare -->", *table(runs), "", made, "<!-- end of compare -->"])
+    readme.write_text(head + block + tail, encoding="utf-8")
+
+
+def main() -> None:
+    """Run what is not there yet, and write the files."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--packings", type=int, default=3, help="of each bed")
+    parser.add_argument("--out", type=Path, default=Path("runs/loose_and_dense_collapse_compare"), help="folder")
+    parser.add_argument("--kept", action="store_true", help="run none, show what is there")
+    parser.add_argument("--write", action="store_true", help="picture and table into the README of the case")
+    asked = parser.parse_args()
+    asked.out.mkdir(parents=True, exist_ok=True)
+    runs: dict[str, list[dict[str, Any]]] = {made: [] for made in MADE}
+    for seed in range(1, asked.packings + 1):
+        for made, many in runs.items():
+            file = asked.out / f"{made}-{seed}.json"
+            if not file.exists() and not asked.kept:
+                file.write_text(json.dumps(run(made, seed)), encoding="utf-8")
+                print(f"{made}, packing {seed}: done", flush=True)
+            if file.exists():
+                many.append(json.loads(file.read_text(encoding="utf-8")))
+    runs = {made: many for made, many in runs.items() if many}
+    draw(runs, asked.out / "compare.png")
+    if asked.write:
+        write(runs)
+    print("\n".join(table(runs)))
+
+
+if __name__ == "__main__":
+    main()
