@@ -75,7 +75,7 @@ class Coupled:
         self.hydraulic_radius = hydraulic_ratio * discs.radius
         self.hydraulic_radius[seen.stop :] = 0.0
         self.polygons = ImmersedPolygons(grains, scales, acceleration) if seen.stop < discs.count else None
-        self.saturated = _cells_of(fluid)(
+        self.saturated = cells_of(fluid)(
             fluid, self.hydraulic_radius[seen] / scales.spacing, solid_operator=solid_operator, weighting=weighting,
             rectangles=rectangles, rings=rings, polygons=self.polygons.polygons if self.polygons else None,
             soft_rim=soft_rim,
@@ -250,7 +250,7 @@ class Coupled:
                 self.polygons.distribute(self.immersed)
 
 
-def _cells_of(fluid: Fluid) -> type[SaturatedCells]:
+def cells_of(fluid: Fluid) -> type[SaturatedCells]:
     """The class of partially saturated cells of a fluid; nothing of a GPU is imported for one on the CPU."""
     if not fluid.on_device:
         return SaturatedCells

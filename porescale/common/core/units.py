@@ -101,6 +101,8 @@ def _from_text(text: str, unit: str) -> float:
     if match is None:
         raise ValueError("is not a number" + (" with a unit" if unit else ""))
     number, given = match.groups()
+    if given.startswith(","):
+        raise ValueError("has a comma; write a number with a point, and a list as [0.1, 0.2]")
     if not given and unit:
         raise ValueError(f"has no unit; write {number} without quotes for {unit}, or add the unit")
     factor, offset = _factor_and_offset(given, unit)

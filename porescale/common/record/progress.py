@@ -101,7 +101,7 @@ class Watch:
 
     def line(self) -> str:
         """Progress of the run as one line of text."""
-        share = 100 * self.time / self.end if self.end else 100.0
+        share = min(100.0, 100 * self.time / self.end) if self.end else 100.0  # the last step may go beyond the end
         text = f"{self.title}: {self.doing()}, t = {self.time:.4g} of {self.end:.4g} s ({share:.0f} %)"
         text += f", step {self.step}"
         left = self.left()

@@ -64,6 +64,8 @@ def test_texts_with_units_become_si(text: str, unit: str, value: float) -> None:
         ("1 parsnip", "m", "unknown unit 'parsnip'"),
         ("1", "m", "has no unit"),
         ("wide", "m", "is not a number with a unit"),
+        ("1,5 mm", "m", "has a comma; write a number with a point"),
+        ("0.3,-9.81", "m/s^2", "and a list as [0.1, 0.2]"),
         ("1 m**9**9**9", "m", "unknown unit"),
         ("1 m)", "m", "unknown unit"),
         ("1e99999999999 m", "m", "fits"),

@@ -102,6 +102,14 @@ def test_time_left_counts_from_the_first_step_not_from_the_compiling(monkeypatch
     assert watch.left() == pytest.approx(4.9)
 
 
+def test_a_last_step_beyond_the_end_is_no_more_than_all():
+    watch = Watch("dam", 0.0, 0.4, quiet=True)
+    watch.update(20, 0.3)
+    assert "(75 %)" in watch.line()  # the twin
+    watch.update(26, 0.4024)
+    assert "t = 0.4024 of 0.4 s (100 %)" in watch.line()
+
+
 def test_time_left_is_right_within_a_tenth_from_a_tenth_of_the_run_on(monkeypatch):
     # Ten blocks a second but for the first three, which compile for 9 s each; rows take a tenth of each block; all
     # that follows takes 8 s.  The mean speed is then exact; the tenth is for what a real run does besides.
