@@ -50,10 +50,10 @@ import sys
 from porescale.builders.build import build
 from porescale.builders.report import report
 from porescale.builders.scene import Scene
-scene = Scene(**{SCENE!r})
+scene = Scene(**{GRAINS!r})
 report(scene)
-build(scene).fluid.advance()
-cuda = ("numba.cuda", "porescale.lbm.device", "porescale.common.compiled.cuda")
+build(scene).stepper.advance()
+cuda = ("numba.cuda", "porescale.lbm.device", "porescale.coupling.device", "porescale.common.compiled.cuda")
 assert not [it for it in sys.modules if it.startswith(cuda)]
 """
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
