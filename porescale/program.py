@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time as clock
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,17 +34,28 @@ def report(scene: Scene) -> Report:
 
 
 def build(scene: Scene) -> Simulation:
-    """The simulation of a scene."""
+    """The simulation of a scene, which knows how long it took to build."""
     from porescale.builders.build import build as build_scene
+    from porescale.common.compiled.turns import TURNS
 
-    return build_scene(scene)
+    began, compiling = clock.perf_counter(), TURNS.seconds
+    model = build_scene(scene)
+    model.built_in = clock.perf_counter() - began - (TURNS.seconds - compiling)
+    return model
+
+
+def rehearsed(scene: Scene) -> AbstractContextManager[None]:
+    """Within this, a second process compiles kernels of the scene."""
+    from porescale.builders.rehearsal import rehearsed as rehearsed_scene
+
+    return rehearsed_scene(scene)
 
 
 def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], **options: Any) -> Outcome:
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.analysis.bed_permeability import write_permeability
     from porescale.builders.checks.device import gpu_of
-    from porescale.builders.cost import remember
+    from porescale.builders.cost import BUILDING, FINISHING, RECORDING, expected, remember, remember_run, snapshot_count
     from porescale.common.api.run_scene import drive_scene
     from porescale.common.page.page import write_report
     from porescale.common.record.open_run import open_run
@@ -54,11 +67,17 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         if pictures and scene.output.report:
             write_report(finished, PROGRAM)
 
+    steps = max(1, round(scene.time.end / model.derived.model_step))
+    count = snapshot_count(scene.time.end, scene.output.snapshot_interval)
+    finish = expected(model.derived, steps, count).finishing
     gpu, driver = gpu_of(scene)
     device = {"name": gpu, "driver": driver} if gpu else {"name": "cpu"}
     card = {**card, "seeds": seeds(scene), "device": device}
-    outcome = drive_scene(model, folder, scene, card=card, after=after, **options)
+    outcome = drive_scene(model, folder, scene, card=card, after=after, finish=finish, **options)
     remember(model.derived, outcome.steps_per_second, gpu)
+    if outcome.steps_per_second and not gpu and not options.get("resume"):
+        taken = {BUILDING: model.built_in, RECORDING: outcome.recording, FINISHING: outcome.finishing}
+        remember_run(model.derived, count, taken)
     return outcome
 
 
@@ -103,6 +122,7 @@ PROGRAM = Program(
     version=VERSION,
     scene=scene_type,
     build=build,
+    rehearsed=rehearsed,
     drive=drive,
     report=report,
     show=show,

@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from porescale.benchmarks.lbm import bytes_of, memory_of, plain
+from porescale.benchmarks.lbm import bytes_of, kind_on, memory_of, plain
 from porescale.builders.build import build
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.evidence.benchmarks import PLAIN, Benchmarks, Dtype, Work
+from porescale.common.evidence.benchmarks import CPU, PLAIN, Benchmarks, Dtype, Work
 from porescale.common.schema.sections import validate
 
 BENCHMARKS = Benchmarks()
@@ -18,7 +18,7 @@ FALLEN = 0.05
 STEPS = 40
 
 
-def column(size: int, dtype: Dtype) -> Scene:
+def column(size: int, dtype: Dtype, device: str = CPU) -> Scene:
     """The column collapse of cases/column_collapse on ``size``² cells, the step scaled with the spacing."""
     spacing = 0.12 / size
     table: dict[str, Any] = {
@@ -33,12 +33,13 @@ def column(size: int, dtype: Dtype) -> Scene:
         },
         "contact": {"stiffness": 5e5, "tangential_stiffness": 1.25e5, "restitution": 0.97, "friction": 0.5},
         "gate": {"x": 0.09, "friction": 0.05},
+        "run": {"device": device},
     }
     return validate(Scene, table)
 
 
-@BENCHMARKS.row("column")
-def bench_column(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
+@BENCHMARKS.row("column", gpu=True)
+def bench_column(size: int | None, threads: int, dtype: Dtype, device: str = CPU) -> list[Work]:
     """Coupled steps of the collapsing column; beside them plain fluid of its size, and the contact steps alone.
 
     What neither of these takes is coverage, the cells that grains lie in and their loads.  Raises InputError if the
@@ -47,11 +48,18 @@ def bench_column(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
     cells = SIZE if size is None else size
     if cells % 4 or cells < 100:
         raise InputError(Fault("--size", cells, "the gate stands at three quarters", allowed="multiples of 4 from 100"))
-    simulation = build(column(cells, dtype))
+    simulation = build(column(cells, dtype, device))
     simulation.advance(max(2, round(FALLEN / simulation.step_seconds)))
-    updates, fluid = float(cells * cells * STEPS), plain(cells, dtype)
+    updates, fluid = float(cells * cells * STEPS), plain(cells, dtype, device)
     coupled = simulation.coupled
     assert coupled
+
+    _, wait = kind_on(device)
+
+    def coupled_steps() -> None:
+        """STEPS steps of all."""
+        simulation.advance(STEPS)
+        wait()
 
     def contacts() -> None:
         """All the contact steps of STEPS steps, without the lattice."""
@@ -60,7 +68,7 @@ def bench_column(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
             coupled.grains.step(step, coupled.force, coupled.torque, coupled.contact_steps)
 
     return [
-        Work(lambda: simulation.advance(STEPS), updates, "cells/s", cells),
+        Work(coupled_steps, updates, "cells/s", cells, gpu=device != CPU),
         Work(contacts, updates, "cells/s", cells, variant="contacts"),
         Work(
             lambda: fluid(STEPS),
@@ -71,5 +79,6 @@ def bench_column(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
             PLAIN,
             yardstick=True,
             memory=memory_of(cells, dtype),
+            gpu=device != CPU,
         ),
     ]

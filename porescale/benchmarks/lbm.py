@@ -25,8 +25,10 @@ def steps_of(cells: int) -> int:
     return 2 * max(1, round(min(CELLS_A_CALL / cells, MOST_STEPS) / 2))
 
 
-def steps_on_gpu(cells: int) -> int:
-    """The same on a GPU, which takes them a hundred times as fast; in its simulator two."""
+def steps_on(device: str, cells: int) -> int:
+    """The same on a device: a GPU takes them some hundred times as fast; in its simulator two."""
+    if device == CPU:
+        return steps_of(cells)
     from porescale.common.compiled.cuda import simulated
 
     return 2 if simulated() else steps_of(max(1, cells // 100))
@@ -53,7 +55,7 @@ def memory_of(side: int, dtype: Dtype) -> int:
 def bench_lbm(size: int | None, threads: int, dtype: Dtype, device: str = CPU) -> Work:
     """A box of ``size`` by ``size`` cells of moving fluid between walls, TRT."""
     side = side_of(size)
-    steps = steps_of(side**2) if device == CPU else steps_on_gpu(side**2)
+    steps = steps_on(device, side**2)
     run = plain(side, dtype, device)
     return Work(
         lambda: run(steps), float(steps * side**2), "cells/s", side, bytes_of(dtype), memory=memory_of(side, dtype),
@@ -63,7 +65,7 @@ def bench_lbm(size: int | None, threads: int, dtype: Dtype, device: str = CPU) -
 
 def plain(side: int, dtype: Dtype, device: str = CPU) -> Callable[[int], None]:
     """Does so many steps of a box of ``side``² cells without solids, and waits for the device."""
-    kind, wait = (Fluid, _go_on) if device == CPU else _on_gpu()
+    kind, wait = kind_on(device)
     fluid = kind(side, side, RELAXATION_TIME, dtype=dtype)
     fluid.set_flow(0.01, 0.005)
 
@@ -76,12 +78,10 @@ def plain(side: int, dtype: Dtype, device: str = CPU) -> Callable[[int], None]:
     return run
 
 
-def _go_on() -> None:
-    """Wait for nothing."""
-
-
-def _on_gpu() -> tuple[type[Fluid], Callable[[], None]]:
-    """The fluid of a GPU, and what waits until it has done its steps."""
+def kind_on(device: str) -> tuple[type[Fluid], Callable[[], None]]:
+    """The fluid of a device, and what waits until it has done its steps."""
+    if device == CPU:
+        return Fluid, lambda: None
     from porescale.common.compiled.cuda import synchronize
     from porescale.lbm.device.fluid import DeviceFluid
 

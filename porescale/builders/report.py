@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from porescale.analysis.permeability import bed_of_spheres, gebart, kozeny_carman, ratio_for
 from porescale.builders.checks.clear_packing import require_clear_packing
 from porescale.builders.checks.device import device_of
-from porescale.builders.cost import expected_seconds, memory, require_memory, seconds_on_gpu, snapshot_bytes
+from porescale.builders.cost import (
+    expected,
+    expected_seconds,
+    memory,
+    require_memory,
+    seconds_on_gpu,
+    snapshot_bytes,
+    snapshot_count,
+)
 from porescale.builders.derive import Derived, derive
 from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
 from porescale.builders.initial.random_polygons import copies_of
@@ -227,11 +235,15 @@ def _regime(density: float, gravity: float, derived: Derived, out: Report) -> No
 def _device(derived: Derived, steps: int, on_cpu: float, out: Report) -> float:
     """What the GPU needs, what there is, and what it would gain; returns seconds on it, those on the CPU if unknown."""
     from porescale.common.compiled.cuda import describe, makers_bandwidth
+    from porescale.coupling.device import bodies
     from porescale.lbm.device.fluid import bytes_needed
 
     assert derived.cells
     name, memory_bytes = describe()
     need = bytes_needed(*derived.cells, derived.precision)
+    if derived.grain_count and derived.diameters and derived.scales:
+        across = math.ceil(derived.diameters[2] / derived.scales.spacing)
+        need += bodies.bytes_needed(*derived.cells, derived.precision, derived.grain_count, across)
     out.row("memory of the GPU", need / 2**20, "MiB", name)
     if memory_bytes and need > memory_bytes:
         out.warn(f"the GPU has {memory_bytes / 2**30:.1f} GiB: the run will not start there")
@@ -251,17 +263,25 @@ def _device(derived: Derived, steps: int, on_cpu: float, out: Report) -> float:
 
 def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     steps = max(1, round(scene.time.end / derived.model_step))
-    seconds, measured = expected_seconds(derived, steps)
+    snapshots = snapshot_count(scene.time.end, scene.output.snapshot_interval)
+    told = expected(derived, steps, snapshots)
+    seconds = told.total
     out.heading("Cost")
     out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
     out.row("memory", memory(derived) / 2**20, "MiB")
-    known = (
-        "by this machine's last runs of such scenes" if measured else "a guess until this machine has done such a run"
-    )
+    guess = "a guess until this machine has done such a run"
+    known = "by this machine's last runs of such scenes" if told.measured else guess
     on_gpu = device_of(scene) == "gpu" and derived.cells is not None
-    out.row("time on the CPU" if on_gpu else "time", seconds, "s", known)
     if on_gpu:
-        seconds = _device(derived, steps, seconds, out)
+        out.row("time on the CPU", told.steps, "s", known)
+        seconds = _device(derived, steps, told.steps, out)
+    else:
+        out.row("time", seconds, "s", known)
+        out.row("of it compiling", told.compiling, "s", "kernels that are not kept on disk")
+        out.row("of it steps", told.steps, "s")
+        out.row(
+            "of it the rest", seconds - told.compiling - told.steps, "s", "start, packing, files, pictures and film"
+        )
     if seconds > WEEK:
         out.warn(
             f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "

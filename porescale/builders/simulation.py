@@ -35,8 +35,10 @@ class Simulation(ShownSimulation):
     step : model steps done (fluid steps, or contact steps without fluid);  step_seconds : s;  time : s.
     parts : the stepper first;  scene, derived : what it was built from.
     fluid, grains, coupled, weight (n, 2) N/m of dry grains : None where the scene has no such thing;  frames : bodies
-    of segments.
+    of segments;  built_in : seconds that building took, but for compiling.
     """
+
+    built_in = 0.0
 
     def __init__(self, system: System, stepper: Stepper) -> None:
         """``system`` : with its parts in the order of their columns, tables, arrays and state;  ``stepper`` : of it."""

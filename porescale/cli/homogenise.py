@@ -69,13 +69,11 @@ def homogenise(
     opened = open_scene(start, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)
     request = section_of(opened.scene)
-    if jobs is not None and jobs < 1:
-        raise InputError(Fault("--jobs", jobs, "is out of range", "", ">= 1"))
     aim = None if until is None else _aim(until)
     folder = output_folder(out, f"{opened.name}_soil")
-    file = _specimen_file(folder, toml(test))
-    campaign = Campaign("porescale", file, folder / "specimens", threads=threads or 1, again=again)
+    campaign = Campaign("porescale", folder / SPECIMEN, folder / "specimens", threads=threads or 1, again=again)
     enlist(campaign, jobs, scheduler)
+    _specimen_file(folder, toml(test))
     use_threads(threads)
     first, count = test["grains"]["packing"]["seed"], request.packings
     ends: list[Ended] = []
@@ -142,8 +140,8 @@ def _more(found: Mapping[str, Known], name: str, small: float) -> int:
     return int(min(max(count - have, 1), have, MOST - have))  # a deviation of few is not trusted with more than twice
 
 
-def _specimen_file(folder: Path, text: str) -> Path:
-    """The scene of the specimens in ``folder``; InputError where another one was begun there."""
+def _specimen_file(folder: Path, text: str) -> None:
+    """Write the scene of the specimens in ``folder``; InputError where another one was begun there."""
     from porescale.common.cli.folders import unusable
     from porescale.common.core.atomic import write_text
 
@@ -157,7 +155,6 @@ def _specimen_file(folder: Path, text: str) -> Path:
             write_text(file, text)
     except OSError as error:
         raise unusable(folder, "--out", error) from None
-    return file
 
 
 def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str, float]]:

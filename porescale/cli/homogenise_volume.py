@@ -17,6 +17,7 @@ from porescale.common.cli.options import Quality, Scene, Settings, Threads, requ
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, Vary, laid_over
 
 if TYPE_CHECKING:
+    from porescale.common.core.statistics import Sample
     from porescale.common.studies.parameter_table import Point
 
 NAME = "volume"
@@ -41,14 +42,11 @@ class Seen(NamedTuple):
     change_half: float = math.nan
 
     @property
-    def mean(self) -> float:
-        """Mean over packings."""
-        return sum(self.values.values()) / len(self.values)
+    def sample(self) -> Sample:
+        """The values of the packings."""
+        from porescale.common.core.statistics import Sample
 
-    @property
-    def deviation(self) -> float:
-        """Standard deviation of one packing."""
-        return math.sqrt(sum((it - self.mean) ** 2 for it in self.values.values()) / max(len(self.values) - 1, 1))
+        return Sample(tuple(self.values.values()))
 
     @property
     def verdict(self) -> str:
@@ -109,7 +107,7 @@ def volume(
 
 def measured(point: Point, material: dict[str, Any], before: dict[str, Seen]) -> dict[str, Seen]:
     """What is shown of a material file, beside the same at the value before."""
-    from porescale.common.core.statistics import half_width
+    from porescale.common.core.statistics import Sample
 
     key, _, value = point.settings[-1].partition("=")
     made = {}
@@ -123,9 +121,9 @@ def measured(point: Point, material: dict[str, Any], before: dict[str, Seen]) ->
         if name in before:
             old = before[name].values
             changes = [values[seed] - old[seed] for seed in values if seed in old]
-            half = half_width(changes)
-            if changes and math.isfinite(half):
-                seen = seen._replace(change=sum(changes) / len(changes), change_half=half)
+            sample = Sample(tuple(changes))
+            if math.isfinite(sample.half):
+                seen = seen._replace(change=sample.mean, change_half=sample.half)
         made[name] = seen
     return made
 
@@ -136,8 +134,8 @@ def write(folder: Path, command: str, rows: Sequence[Seen]) -> None:
 
     header = ["key", "value", "quantity", "packings", "mean", "interval", "one packing", "change", "its interval", ""]
     lines = [
-        [it.key, it.value, SHOWN[it.name], len(it.values), it.mean, it.half, it.deviation, it.change, it.change_half,
-         it.verdict]
+        [it.key, it.value, SHOWN[it.name], len(it.values), it.sample.mean, it.half, it.sample.deviation, it.change,
+         it.change_half, it.verdict]
         for it in rows
     ]  # fmt: skip
     shown = [[f"{cell:.4g}" if isinstance(cell, float) and math.isfinite(cell) else "–" if isinstance(cell, float) else
@@ -164,7 +162,7 @@ def picture(rows: Sequence[Seen]) -> bytes:
             for at, it in enumerate(ladder):
                 place.plot([at] * len(it.values), list(it.values.values()), ".", color="#9fb8c8", ms=4)
                 half = it.half if math.isfinite(it.half) else 0.0
-                place.errorbar(at, it.mean, yerr=half, fmt="o", color="#8c1c2f", ms=4, capsize=4)
+                place.errorbar(at, it.sample.mean, yerr=half, fmt="o", color="#8c1c2f", ms=4, capsize=4)
             place.set_xticks(range(len(ladder)), [it.value for it in ladder], fontsize=7)
             place.set_xlim(-0.5, len(ladder) - 0.5)
             place.set_title(SHOWN[name], fontsize=8)

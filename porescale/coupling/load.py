@@ -7,10 +7,35 @@ Each row of a body's patch is summed when the lattice row has been collided and 
 order afterwards, so that loads do not depend on threads.
 """
 
+import numpy as np
+
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, prefetch, tree_sum, unchecked_view
-from porescale.coupling.coverage.rows import AHEAD, BLOCK, blocks_inside
+from porescale.coupling.coverage.rows import AHEAD, BLOCK, blocks_inside, motion_of_block, motion_of_row, solid_velocity
 
 total = tree_sum(BLOCK)
+
+
+@inline
+def load_of_cell(e, gained, i, block):
+    """What a body that covers e of cell ``i`` of a block gains: force along x and y, torque, inside mass and its moment
+    of inertia.
+
+    gained: rho, then j along x and y, times B/sum e;  block: ``motion_of_block``.
+    """
+    rho, jx, jy = gained
+    vx, vy = solid_velocity(e, i, block)
+    gy = e * (jy - rho * vy)
+    gx = e * (jx - rho * vx)
+    m = e * rho
+    x, y = block[0] + i, block[1]
+    return gx, gy, x * gy - y * gx, m, m * (x * x + y * y)
+
+
+@inline
+def rim_of_cell(e, rho, slip):
+    """e (1 - e) times the slip of a cell, and without it; none of what lies beyond the box, where rho is 0."""
+    edge = e * (np.float64(1) - e) * (rho > 0)
+    return edge * slip, edge
 
 
 @inline
@@ -23,7 +48,6 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
     where rims are soft, with a fourth row of scratch, the slip |u - v|, also the sums of e (1 - e) times slip and of
     e (1 - e) (partial 7 * BLOCK, row_load 7).
     """
-    centre, velocity, spin, shift = motion.centre, motion.velocity, motion.spin, motion.shift
     nx = scratch.shape[1] - 2 * BLOCK
     density, jx, jy = scratch[0], scratch[1], scratch[2]
     for k in range(rows.start[y], rows.start[y + 1]):
@@ -34,15 +58,7 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
         stride = patches.stride[n]
         at = patches.start[n] + j * stride
         base = patches.corner[n, 0]
-        ry = patches.corner[n, 1] + j + 0.5 - centre[n, 1]
-        rx = base + 0.5 - centre[n, 0]
-        turning = ramp.dtype.type(spin[n])
-        height = ramp.dtype.type(ry)
-        vx = ramp.dtype.type(velocity[n, 0] - spin[n] * ry)
-        vy0 = velocity[n, 1] + spin[n] * rx
-        twist = ramp.dtype.type(shift[n, 2])
-        cx = ramp.dtype.type(shift[n, 0] - shift[n, 2] * ry)
-        cy0 = shift[n, 1] + shift[n, 2] * rx
+        row = motion_of_row(n, j, patches, motion)
         fx = 0.0
         fy = 0.0
         tz = 0.0
@@ -56,24 +72,19 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
         while base + stride > 0:  # once, or again for what lies beyond a periodic side
             first, last = blocks_inside(base, stride, nx)
             for b in range(first, last, BLOCK):
-                arm = ramp.dtype.type(rx + b)
-                vy = ramp.dtype.type(vy0 + spin[n] * b)
-                cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
+                block = motion_of_block(n, b, row, patches, motion)
                 e = unchecked_view(patches.fraction, at + b, BLOCK)
                 x = base + b + BLOCK
                 rho = unchecked_view(density, x, BLOCK)
                 kx = unchecked_view(jx, x, BLOCK)
                 ky = unchecked_view(jy, x, BLOCK)
                 for i in range(BLOCK):
-                    gy = e[i] * (ky[i] - rho[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i])))
-                    gx = e[i] * (kx[i] - rho[i] * (vx + e[i] * cx))
-                    m = e[i] * rho[i]
-                    x1 = arm + ramp[i]
+                    gx, gy, turn, m, inside = load_of_cell(e[i], (rho[i], kx[i], ky[i]), ramp[i], block)
                     partial[i] = gx
                     partial[BLOCK + i] = gy
-                    partial[2 * BLOCK + i] = x1 * gy - height * gx
+                    partial[2 * BLOCK + i] = turn
                     partial[3 * BLOCK + i] = m
-                    partial[4 * BLOCK + i] = m * (x1 * x1 + height * height)
+                    partial[4 * BLOCK + i] = inside
                 fx += total(partial, 0)
                 fy += total(partial, BLOCK)
                 tz += total(partial, 2 * BLOCK)
@@ -82,8 +93,8 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
                 if soft:
                     slip = unchecked_view(scratch[3], x, BLOCK)
                     for i in range(BLOCK):
-                        edge = e[i] * (1 - e[i]) * (rho[i] > 0)  # none of what lies beyond the box
-                        partial[5 * BLOCK + i] = edge * slip[i]
+                        slipped, edge = rim_of_cell(e[i], rho[i], slip[i])
+                        partial[5 * BLOCK + i] = slipped
                         partial[6 * BLOCK + i] = edge
                     slipping += total(partial, 5 * BLOCK)
                     rim += total(partial, 6 * BLOCK)
@@ -100,6 +111,28 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
             row_load[n, j, 6] = rim
 
 
+@inline
+def add_rows_of(n, corner, height, box, row_load, load, inside):
+    """``add_rows`` of body ``n``;  box: (ny, whether y is periodic)."""
+    fx = 0.0
+    fy = 0.0
+    tz = 0.0
+    mass = 0.0
+    inertia = 0.0
+    for j in range(height[n]):
+        if box[1] or 0 <= corner[n, 1] + j < box[0]:
+            fx += row_load[n, j, 0]
+            fy += row_load[n, j, 1]
+            tz += row_load[n, j, 2]
+            mass += row_load[n, j, 3]
+            inertia += row_load[n, j, 4]
+    load[n, 0] = fx
+    load[n, 1] = fy
+    load[n, 2] = tz
+    inside[n, 0] = mass
+    inside[n, 1] = inertia
+
+
 @parallel_kernel
 def add_rows(corner, height, ny, periodic_y, row_load, load, inside):
     """Sum of the rows of every body; overwrites load (n, 3), force and torque, and inside (n, 2), mass and inertia.
@@ -107,36 +140,25 @@ def add_rows(corner, height, ny, periodic_y, row_load, load, inside):
     Inside mass: sum of B_n rho, what of the fluid takes the body's velocity in one step.
     """
     for n in prange(load.shape[0]):
-        fx = 0.0
-        fy = 0.0
-        tz = 0.0
-        mass = 0.0
-        inertia = 0.0
-        for j in range(height[n]):
-            y = corner[n, 1] + j
-            if periodic_y or 0 <= y < ny:
-                fx += row_load[n, j, 0]
-                fy += row_load[n, j, 1]
-                tz += row_load[n, j, 2]
-                mass += row_load[n, j, 3]
-                inertia += row_load[n, j, 4]
-        load[n, 0] = fx
-        load[n, 1] = fy
-        load[n, 2] = tz
-        inside[n, 0] = mass
-        inside[n, 1] = inertia
+        add_rows_of(n, corner, height, (ny, periodic_y), row_load, load, inside)
+
+
+@inline
+def sum_rim_slip_of(n, corner, height, box, row_load, rim):
+    """``sum_rim_slip`` of body ``n``;  box: (ny, whether y is periodic)."""
+    rim[n, 0] = 0.0
+    rim[n, 1] = 0.0
+    for j in range(height[n]):
+        if box[1] or 0 <= corner[n, 1] + j < box[0]:
+            rim[n, 0] += row_load[n, j, 5]
+            rim[n, 1] += row_load[n, j, 6]
 
 
 @kernel
 def sum_rim_slip(corner, height, ny, periodic_y, row_load, rim):
     """Sum of the rows of the first bodies where rims are soft; overwrites rim (n, 2), see ``accumulate_load_row``."""
     for n in range(rim.shape[0]):
-        rim[n, 0] = 0.0
-        rim[n, 1] = 0.0
-        for j in range(height[n]):
-            if periodic_y or 0 <= corner[n, 1] + j < ny:
-                rim[n, 0] += row_load[n, j, 5]
-                rim[n, 1] += row_load[n, j, 6]
+        sum_rim_slip_of(n, corner, height, (ny, periodic_y), row_load, rim)
 
 
 @kernel

@@ -320,6 +320,10 @@ class SaturatedCells:
             *self._laws,
         )  # fmt: skip
         self._sum_loads(fluid)
+        self._respond()
+
+    def _respond(self) -> None:
+        """What follows from the loads: the push beside them, and the half-step correction of the next step."""
         if self.driven:
             self._push_bodies()
         if self.operator.half_step_correction:

@@ -56,6 +56,52 @@ class RowWork(NamedTuple):
 
 
 @inline
+def weights_of_cell(e, weighting, solid):
+    """What a saturated cell needs that follows from the sum e of its solid fractions alone: 1/e, the weight b, and the
+    two ``rates``.  1 where there is no e to speak of, whose square is 0 (1 over it may be infinite)."""
+    c = numbers(e)
+    share = c.one / (e if e * e > c.zero else c.one)
+    e = min(c.one, e)
+    b = weight(e, c.zero, c.zero, c.zero, weighting)
+    return share, b, rates(e, b, c.zero, c.zero, c.zero, solid)
+
+
+@inline
+def collide_saturated_cell(f, body, weights, laws):
+    """Collide a cell in which grains lie: its populations, what loads are made of, and |u - v| where rims are soft.
+
+    body: sum e of the solid fractions and of e times theta, velocity of the solid (x, y);  weights: of
+    ``weights_of_cell``;  laws: of weight, solid and fluid operator, that of the cell.
+    """
+    weighting, solid, law = laws
+    e, theta, vx, vy = body
+    share, held, shares = weights
+    c = numbers(law.rate)
+    one = c.one
+    half_x, half_y = half_force(law)
+    d, jx, jy = moments(f)
+    rho = one + d
+    specific_volume = one / rho
+    e, slip = min(one, e), c.zero
+    if is_soft(solid):
+        theta = theta * share
+        slip_x = (jx + half_x) * specific_volume - vx
+        slip_y = (jy + half_y) * specific_volume - vy
+        held = weight(e, theta, slip_x, slip_y, weighting)
+        shares = rates(e, held, theta, slip_x, slip_y, solid)
+        slip = np.sqrt(slip_x * slip_x + slip_y * slip_y)
+    acting = force_share(held, solid)
+    hx, hy = acting * half_x, acting * half_y
+    kx, ky = jx + hx, jy + hy
+    cell = SolidCell(e, held, theta, vx, vy, hx, hy)
+    m = Macroscopic(d, kx, ky, kx * specific_volume, ky * specific_volume)
+    rate = shear_rate(f, m, law)
+    g = collide_with_solid(f, cell, shares, m, rate, law, solid)
+    ta, tx, ty = momentum_to_solid(cell, rho, jx, jy, rate, solid)
+    return g, (share * ta, share * tx, share * ty), slip
+
+
+@inline
 def weights_row(s, sx, sy, weights, weighting, solid):
     """What saturated cells need that follows from the bodies alone.
 
@@ -65,16 +111,11 @@ def weights_row(s, sx, sy, weights, weighting, solid):
     would wait for each other.
     """
     inverse, b, first_rate, second_rate = weights
-    c = numbers(weighting[0])
     for x in range(s.shape[0]):
-        e = s[x]
-        share = c.one / (e if e * e > c.zero else c.one)
-        e = min(c.one, e)
+        share, b[x], (first_rate[x], second_rate[x]) = weights_of_cell(s[x], weighting, solid)
         inverse[x] = share
         sx[x] *= share
         sy[x] *= share
-        b[x] = weight(e, c.zero, c.zero, c.zero, weighting)
-        first_rate[x], second_rate[x] = rates(e, b[x], c.zero, c.zero, c.zero, solid)
 
 
 @inline
@@ -99,39 +140,31 @@ def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
     inverse, b = unchecked_view(weights[0], 0, n), unchecked_view(weights[1], 0, n)
     first_rate, second_rate = unchecked_view(weights[2], 0, n), unchecked_view(weights[3], 0, n)
     weights_row(s, sx, sy, (inverse, b, first_rate, second_rate), weighting, solid)
-    c = numbers(law.rate)
-    one = c.one
     fluids = part_law(first, last, law)
     soft = is_soft(solid)
     for x in range(s.shape[0]):
-        here = cell_law(x, fluids)
-        half_x, half_y = half_force(here)
         f = (a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
-        d, jx, jy = moments(f)
-        rho = one + d
-        specific_volume = one / rho
-        share, held, shares = inverse[x], b[x], (first_rate[x], second_rate[x])
-        e, theta, vx, vy = min(one, s[x]), c.zero, sx[x], sy[x]
+        here, shares = (weighting, solid, cell_law(x, fluids)), (first_rate[x], second_rate[x])
+        theta = st[x] if soft else numbers(s[x]).zero
+        g, gained, slip = collide_saturated_cell(f, (s[x], theta, sx[x], sy[x]), (inverse[x], b[x], shares), here)
+        a0[x], a2[x], a1[x], a4[x], a3[x] = g[0], g[1], g[2], g[3], g[4]
+        a6[x], a5[x], a8[x], a7[x] = g[5], g[6], g[7], g[8]
         if soft:
-            theta = st[x] * share
-            slip_x = (jx + half_x) * specific_volume - vx
-            slip_y = (jy + half_y) * specific_volume - vy
-            held = weight(e, theta, slip_x, slip_y, weighting)
-            shares = rates(e, held, theta, slip_x, slip_y, solid)
-            st[x] = np.sqrt(slip_x * slip_x + slip_y * slip_y)
-        acting = force_share(held, solid)
-        hx, hy = acting * half_x, acting * half_y
-        kx, ky = jx + hx, jy + hy
-        cell = SolidCell(e, held, theta, vx, vy, hx, hy)
-        m = Macroscopic(d, kx, ky, kx * specific_volume, ky * specific_volume)
-        rate = shear_rate(f, m, here)
-        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide_with_solid(f, cell, shares, m, rate, here, solid)
-        a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
-        a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8
-        ta, tx, ty = momentum_to_solid(cell, rho, jx, jy, rate, solid)
-        s[x] = share * ta
-        sx[x] = share * tx
-        sy[x] = share * ty
+            st[x] = slip
+        s[x], sx[x], sy[x] = gained
+
+
+@inline
+def stretches(left, right, n):
+    """First and one past the last saturated cell of a row of n, where bodies may cover those from ``left`` to
+    ``right`` - 1.
+
+    Short loops run cell by cell: the plain ends of the row are whole stretches, or empty.
+    """
+    if left >= right:
+        left = n
+        right = n
+    return left // STRETCH * STRETCH, min((right + STRETCH - 1) // STRETCH * STRETCH, n)
 
 
 @inline
@@ -148,11 +181,7 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, ramp, row_load, 
     right = n
     if rows.start[y] < rows.start[y + 1]:
         left, right = rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch)
-    if left >= right:
-        left = n
-        right = n
-    # Short loops run cell by cell: the plain ends of the row are whole stretches, or empty.
-    left, right = left // STRETCH * STRETCH, min((right + STRETCH - 1) // STRETCH * STRETCH, n)
+    left, right = stretches(left, right, n)
     for end_of_row in range(2):  # one loop for both ends: compiled once
         first, last = (right, n) if end_of_row else (0, left)
         collide_row(planes, first, last, law)

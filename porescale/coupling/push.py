@@ -15,6 +15,8 @@ box at rest load and push of exact walls cancel; the other operators leave 0.3 t
 since water beside their rims does not quite come to rest.  Derived here.
 """
 
+import numpy as np
+
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.coupling.weighting.law import weight
 
@@ -32,27 +34,40 @@ def cells_within(patches, n, j, periodic, shape):
     return at + first, at + last
 
 
+@inline
+def covered_area_of(n, patches, periodic, shape):
+    """``covered_area`` of body ``n``."""
+    taken = 0.0
+    for j in range(patches.height[n]):
+        first, last = cells_within(patches, n, j, periodic, shape)
+        for i in range(first, last):
+            taken += np.float64(patches.fraction[i])
+    return taken
+
+
+@inline
+def held_area_of(n, patches, periodic, shape, half_rate, weighting):
+    """``held_area`` of body ``n``."""
+    taken = 0.0
+    for j in range(patches.height[n]):
+        first, last = cells_within(patches, n, j, periodic, shape)
+        for i in range(first, last):
+            e = np.float64(patches.fraction[i])
+            zero = e * 0
+            b = np.float64(weight(min(e, zero + 1), zero, zero, zero, weighting))
+            taken += b * (1.0 + (1.0 - b) * half_rate)
+    return taken
+
+
 @parallel_kernel
 def covered_area(patches, periodic, shape, area):
     """Sum of the solid fractions of every body in a box of shape (ny, nx), into area (n,); periodic: along x, y."""
     for n in prange(area.shape[0]):
-        taken = 0.0
-        for j in range(patches.height[n]):
-            first, last = cells_within(patches, n, j, periodic, shape)
-            for i in range(first, last):
-                taken += patches.fraction[i]
-        area[n] = taken
+        area[n] = covered_area_of(n, patches, periodic, shape)
 
 
 @parallel_kernel
 def held_area(patches, periodic, shape, half_rate, weighting, area):
     """The same with B (1 + (1 - B) s/2) in place of the fraction;  half_rate: s/2;  weighting: law of B."""
     for n in prange(area.shape[0]):
-        taken = 0.0
-        for j in range(patches.height[n]):
-            first, last = cells_within(patches, n, j, periodic, shape)
-            for i in range(first, last):
-                zero = patches.fraction[i] * 0
-                b = float(weight(min(patches.fraction[i], zero + 1), zero, zero, zero, weighting))
-                taken += b * (1.0 + (1.0 - b) * half_rate)
-        area[n] = taken
+        area[n] = held_area_of(n, patches, periodic, shape, half_rate, weighting)

@@ -75,7 +75,7 @@ class Coupled:
         self.hydraulic_radius = hydraulic_ratio * discs.radius
         self.hydraulic_radius[seen.stop :] = 0.0
         self.polygons = ImmersedPolygons(grains, scales, acceleration) if seen.stop < discs.count else None
-        self.saturated = SaturatedCells(
+        self.saturated = cells_of(fluid)(
             fluid, self.hydraulic_radius[seen] / scales.spacing, solid_operator=solid_operator, weighting=weighting,
             rectangles=rectangles, rings=rings, polygons=self.polygons.polygons if self.polygons else None,
             soft_rim=soft_rim,
@@ -248,6 +248,15 @@ class Coupled:
             self._take_push()
             if self.polygons:
                 self.polygons.distribute(self.immersed)
+
+
+def cells_of(fluid: Fluid) -> type[SaturatedCells]:
+    """The class of partially saturated cells of a fluid; nothing of a GPU is imported for one on the CPU."""
+    if not fluid.on_device:
+        return SaturatedCells
+    from porescale.coupling.device.cells import DeviceSaturatedCells
+
+    return DeviceSaturatedCells
 
 
 def response_share(grains: Grains, inside: Displaced, layer: float, seen: slice) -> Reals:

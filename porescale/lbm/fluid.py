@@ -42,8 +42,10 @@ class Fluid:
     force_field (2, ny, nx): force density of every cell, None where it is uniform;
     populations (9, ny + 2, nx + 2): slots, see lattice.py, a part of ``padded``, the same with rows as long as they are
     in memory, and of ``flat``, in one dimension;  step: steps done;  plates: of no thickness, see
-    boundary/thin_plate.py.  A step allocates nothing.
+    boundary/thin_plate.py;  on_device: whether a graphics device steps it.  A step allocates nothing.
     """
+
+    on_device = False
 
     def __init__(
         self,

@@ -1,5 +1,6 @@
 """Scenes on a GPU, in numba's simulator: refused in one line, the same bits, resumed on the other device."""
 
+import copy
 import subprocess
 import sys
 
@@ -22,7 +23,25 @@ SCENE = {
     "fluid": FLUID,
 }
 ON_GPU = {**SCENE, "run": {"device": "gpu"}}
-DISC = [{"x": 0.003, "y": 0.003, "diameter": 0.002}]
+BLOCK = [{"lower": [0.002, 0.002], "upper": [0.004, 0.004]}]
+GRAINS = {
+    "domain": {"width": 0.024, "height": 0.014, "left": "periodic", "right": "periodic"},
+    "time": {"end": 0.02},
+    "output": {"snapshot_interval": 0.01, "series_interval": 0.01},
+    "fluid": {**FLUID, "viscosity": 4e-4, "density": 1000},
+    "grains": {
+        "density": 2500,
+        "hydraulic_radius_ratio": 0.9,
+        "grain": [
+            {"x": 0.0095, "y": 0.005, "diameter": 0.005, "velocity": [0.02, 0], "spin": 3},
+            {"x": 0.014601, "y": 0.006, "diameter": 0.0054},
+            {"x": 0.0235, "y": 0.0105, "diameter": 0.005, "velocity": [0, -0.02]},
+        ],
+    },
+    "disc": [{"x": 0.0185, "y": 0.0025, "diameter": 0.004}],
+    "contact": {"stiffness": 1e5, "tangential_stiffness": 2.5e4, "restitution": 0.6, "friction": 0.4},
+}
+GRAINS_ON_GPU = {**GRAINS, "run": {"device": "gpu"}}
 
 
 def test_a_scene_without_the_key_imports_nothing_of_cuda():
@@ -31,16 +50,16 @@ import sys
 from porescale.builders.build import build
 from porescale.builders.report import report
 from porescale.builders.scene import Scene
-scene = Scene(**{SCENE!r})
+scene = Scene(**{GRAINS!r})
 report(scene)
-build(scene).fluid.advance()
-cuda = ("numba.cuda", "porescale.lbm.device", "porescale.common.compiled.cuda")
+build(scene).stepper.advance()
+cuda = ("numba.cuda", "porescale.lbm.device", "porescale.coupling.device", "porescale.common.compiled.cuda")
 assert not [it for it in sys.modules if it.startswith(cuda)]
 """
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
-@pytest.mark.parametrize("change", [{"disc": DISC}, {"fluid": None}])
+@pytest.mark.parametrize("change", [{"rectangle": BLOCK}, {"fluid": None}])
 def test_what_a_gpu_lacks_is_refused_in_one_line(change):
     table = {name: value for name, value in {**ON_GPU, **change}.items() if value is not None}
     with pytest.raises(InputError) as refused:
@@ -167,3 +186,62 @@ def test_a_diverging_fluid_is_found_without_its_populations(monkeypatch):
             simulation.check()
         said.append(str(error.value))
     assert said[0] == said[1]
+
+
+def memory_row(scene):
+    """MiB of the GPU in the report of a scene."""
+    return float(str(report(Scene(**scene))).split("memory of the GPU")[1].split()[0])
+
+
+def test_check_counts_what_discs_need_on_the_gpu():
+    """At least what loads are made of in every cell."""
+    without = {name: it for name, it in GRAINS_ON_GPU.items() if name not in ("grains", "disc", "contact")}
+    assert memory_row(GRAINS_ON_GPU) > memory_row(without) + 3 * 8 * 24 * 14 / 2**20
+
+
+def flat(state):
+    """Arrays and numbers of a state, by their place in it."""
+    if isinstance(state, dict):
+        return {f"{key}/{name}": it for key, value in state.items() for name, it in flat(value).items()}
+    return {"": np.array(state)}
+
+
+def same(one, other):
+    """Names of what differs between two states."""
+    one, other = flat(one), flat(other)
+    assert list(one) == list(other)
+    return [name for name in one if not np.array_equal(one[name], other[name])]
+
+
+def stepped(scene, steps):
+    """A simulation after so many steps."""
+    made = build(Scene(**scene))
+    for _ in range(steps):
+        made.stepper.advance()
+    return made
+
+
+def test_grains_in_water_move_to_the_same_bits():
+    """Free, held and touching, one across a periodic side; and what is read of them."""
+    cpu, gpu = stepped(GRAINS, 3), stepped(GRAINS_ON_GPU, 3)
+    assert same(gpu.stepper.state(), cpu.stepper.state()) == []
+    assert np.abs(cpu.stepper.coupled.contact_load()[:2, 0]).min() > 0
+    for ours, theirs in zip(gpu.stepper.fields(), cpu.stepper.fields(), strict=True):
+        assert np.array_equal(ours, theirs)
+    gpu.stepper.check()
+    assert gpu.stepper.coupled.momentum() == pytest.approx(cpu.stepper.coupled.momentum(), rel=0, abs=0)
+
+
+def test_grains_in_other_water_move_elsewhere():
+    """The check that must fail."""
+    other = {**GRAINS_ON_GPU, "fluid": {**GRAINS["fluid"], "relaxation_time": 0.71}}
+    assert same(stepped(other, 1).stepper.state(), stepped(GRAINS, 1).stepper.state())
+
+
+@pytest.mark.parametrize(("first", "then"), [(GRAINS, GRAINS_ON_GPU), (GRAINS_ON_GPU, GRAINS)])
+def test_grains_go_on_on_the_other_device_from_an_odd_step(first, then):
+    begun, other = stepped(first, 1), stepped(then, 0)
+    other.stepper.restore(copy.deepcopy(begun.stepper.state()))
+    for _ in range(2):
+        other.stepper.advance()
+    assert same(other.stepper.state(), stepped(GRAINS, 3).stepper.state()) == []

@@ -1,6 +1,7 @@
 """What a collapse is measured by: front, run-out, surface, energies, against what can be counted by hand."""
 
 import itertools
+import json
 import math
 
 import numpy as np
@@ -11,6 +12,7 @@ from porescale.builders.build import build
 from porescale.builders.checks.regime import terminal_speed
 from porescale.builders.derive import derive
 from porescale.builders.parts.flow_fields import fluid_row
+from porescale.common.compiled.turns import Turns
 from porescale.lbm.scales import Scales
 from porescale.output.surface import surface
 from tests.reference.scenes import column, dry, grain, water
@@ -171,3 +173,53 @@ def test_a_rate_that_cannot_be_noted_fails_no_run(tmp_path, monkeypatch):
     derived = derive(column())
     cost.remember(derived, 500.0)
     assert not cost.expected_seconds(derived, 1000)[1]
+
+
+def test_check_expects_the_whole_command(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(cost, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(cost, "TURNS", turns := Turns())
+    derived, snapshots = derive(column()), 11
+    guess = cost.expected(derived, 1000, snapshots)
+    assert (guess.compiling, guess.measured) == (cost.KERNELS, False)
+    turns.kept, turns.seconds = ["cover-1", "sweep-2", "sweep-2"], 30.0
+    for name in turns.kept:
+        (tmp_path / f"{name}.nbc").touch()
+    taken = {cost.BUILDING: 4.0, cost.RECORDING: 5.0, cost.FINISHING: 6.0}
+    for rate in (500.0, 500.0, 5.0):  # the last one shared the machine
+        cost.remember(derived, rate)
+        cost.remember_run(derived, snapshots, taken if rate > 5.0 else dict.fromkeys(taken, 1e3))
+    known = cost.expected(derived, 1000, snapshots)
+    assert known.measured
+    # Two seconds of steps, what the parts took, and the start; all kernels are kept.
+    assert known.total == pytest.approx(cost.START + 2.0 + 4.0 + 5.0 + 6.0, rel=1e-12)
+    # Half of the kernels are gone, as after an edit.
+    (tmp_path / "sweep-2.nbc").unlink()
+    assert cost.expected(derived, 1000, snapshots).compiling == pytest.approx(15.0)
+    # The check that must fail: three times the snapshots, so more of what each takes, but not three times that.
+    more = cost.expected(derived, 1000, 3 * snapshots)
+    assert known.finishing < more.finishing < 3 * known.finishing
+    assert more.building == known.building
+
+
+def test_few_kernels_that_changed_do_not_stand_for_all(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(cost, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(cost, "TURNS", turns := Turns())
+    derived, taken = derive(column()), {cost.BUILDING: 1.0, cost.RECORDING: 1.0, cost.FINISHING: 1.0}
+    for kept, seconds in ((["a", "b", "c"], 30.0), (["b"], 9.0), ([], 0.0)):
+        turns.kept, turns.seconds = kept, seconds
+        cost.remember_run(derived, 11, taken)
+    assert cost.expected(derived, 1000, 11).compiling == pytest.approx(30.0)  # none of the three is on disk
+
+
+def test_a_spoiled_note_of_a_run_is_a_guess(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    derived = derive(column())
+    guess = cost.expected(derived, 1000, 11)
+    kind = cost._kind(derived)
+    for table in ([], {kind: 3}, {kind: {"building": ["x"], "compiling": [-1.0], "kernels": 5}}):
+        file = tmp_path / "porescale" / "rate.json"
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(json.dumps({"slowness": {}, "besides": table}))
+        assert cost.expected(derived, 1000, 11) == guess

@@ -22,10 +22,10 @@ def test_a_change_is_that_of_the_same_packings():
     # 10, 12, 14, 16 degrees and each 1 ± 0.1 more: packings are 2.6 degrees apart, their differences 0.12
     _, after = compared((10, 12, 14, 16), (11.1, 12.9, 15.1, 16.9))
     seen = after["critical_friction_angle"]
-    assert (seen.mean, seen.change) == pytest.approx((14.0, 1.0))
+    assert (seen.sample.mean, seen.change) == pytest.approx((14.0, 1.0))
     assert seen.change_half == pytest.approx(3.1824 * 0.11547 / 2.0, rel=1e-4)  # t of three degrees of freedom
     assert seen.verdict == "resolved"
-    assert seen.deviation == pytest.approx(2.6, abs=0.1)
+    assert seen.sample.deviation == pytest.approx(2.6, abs=0.1)
 
 
 def test_the_same_change_of_other_packings_is_not_resolved():  # the twin that must fail

@@ -194,9 +194,10 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     discs = [(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)]
     kinds = ("periodic", "wall")
     compiled = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
-    for name in ("small_angle", "quarter_area", "mark_lines", "corner_area", "cover_disc"):
+    of_lines = "small_angle", "quarter_area", "line_at", "mark_lines", "across"
+    for name in (*of_lines, "corner_area", "strip_area", "least_part", "full_or_empty", "place_corner", "cover_disc"):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
-    for name in ("list_part", "blocks_inside", "rasterize_row"):
+    for name in ("list_part", "blocks_inside", "motion_of_row", "motion_of_block", "solid_velocity", "rasterize_row"):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
     for module, name in ((coverage, "cover"), (coverage_rows, "list_rows"), (coverage_rows, "rasterize")):
         monkeypatch.setattr(f"porescale.coupling.psm.{name}", getattr(module, name).py_func)
@@ -221,7 +222,9 @@ def test_loads_are_the_same_uncompiled(monkeypatch):
             take, add = take.py_func, add.py_func
         if plain:
             monkeypatch.setattr(load, "total", load.total.py_func)
-            monkeypatch.setattr(load, "blocks_inside", coverage_rows.blocks_inside.py_func)
+            for name in ("blocks_inside", "motion_of_row", "motion_of_block", "load_of_cell", "add_rows_of"):
+                monkeypatch.setattr(load, name, getattr(load, name).py_func)
+            monkeypatch.setattr(load, "solid_velocity", coverage_rows.solid_velocity.py_func)
         row_load, loads, inside = np.full_like(wet._work.row_load, np.nan), np.zeros((2, 3)), np.zeros((2, 2))
         for y in range(5):
             take(y, rows, patches, motion, True, wet._work.ramp, scratch[y], partial, row_load)

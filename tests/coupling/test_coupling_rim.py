@@ -80,8 +80,8 @@ def test_kernels_are_the_same_uncompiled(monkeypatch):
     made = []
     for plain in (False, True):
         if plain:
-            monkeypatch.setattr(rim, "softness", rim.softness.py_func)
-            monkeypatch.setattr(rim, "filter_patch", rim.filter_patch.py_func)
+            for name in ("softness", "filtered", "filter_row", "filter_cell", "filter_patch"):
+                monkeypatch.setattr(rim, name, getattr(rim, name).py_func)
         theta, theta2, covering = np.zeros((3, 2))
         soften, smeared = (rim.soften, rim.filter_patches)
         if plain:

@@ -21,11 +21,11 @@ def every():
 
 
 def test_nearly_right_scenes_are_checked_or_refused(every):
-    tables = {package: [table for _, of, table in every if of is package] for package in (PORESCALE, CONTINUUM)}
+    tables = {it.name: [table for _, of, table in every if of is it] for it in (PORESCALE, CONTINUUM)}
     ends = []
     for seed in range(COUNT):
         source = every[seed % len(every)]
-        ends.append(nearly.judged(source, seed, others=tables[source[1]]))
+        ends.append(nearly.judged(source, seed, others=tables[source[1].name]))
     assert {"checked", "refused"} == set(ends)
 
 

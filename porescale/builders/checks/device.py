@@ -13,7 +13,7 @@ def check_device(scene: Scene) -> list[Fault]:
         return []
     if scene.fluid is None:
         return [Fault("run.device", "gpu", "steps fluid only, and there is none", repair=REPAIR)]
-    solids = {"grains": scene.grains, "disc": scene.disc, "rectangle": scene.rectangle, "ring": scene.ring}
+    solids = {"rectangle": scene.rectangle, "ring": scene.ring}
     lacking = [f"[{name}] in fluid" for name, section in solids.items() if section]
     if isinstance(scene.fluid.body_force, OwnLaw):
         lacking.append("a body_force of your own")

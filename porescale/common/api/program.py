@@ -6,6 +6,7 @@ Every part is a function, so that nothing is imported before it is needed: `--he
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -62,6 +63,7 @@ class Program:
     measured : sections of a scene that can be measured on a finished run, by key;  measure : measures those of a scene
     (that of the run, with them in place of its own), the tables by name, each columns by name;
     widget : shows a run in notebooks;
+    rehearsed : context within which kernels of a scene are compiled by a second process, too;
     formerly : tables like those of a scene, with what was done before keys were there whose defaults do something else.
     """
 
@@ -79,6 +81,7 @@ class Program:
     measured: Sequence[str] = ()
     measure: Callable[[Run, Any], Mapping[str, Mapping[str, Sequence[float]]]] | None = None
     widget: Callable[[Run], Any] | None = None
+    rehearsed: Callable[[Any], AbstractContextManager[None]] = nullcontext
     formerly: Mapping[str, Any] = field(default_factory=dict)
 
     def required(self, scene: Any) -> Any:

@@ -22,6 +22,9 @@ def command(package: Package) -> Callable[..., int]:
         if not name:
             raise InputError(Fault("NAME", name, "is empty", repair="name a folder"))
         folder = Path(name)
+        if folder.suffix.lower() == ".toml":
+            problem, repair = "names a file", f"name the folder to make: {folder.stem}; scene.toml will be in it"
+            raise InputError(Fault("NAME", name, problem, repair=repair))
         try:
             if from_ is not None:
                 _copy(package, from_, folder)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -45,6 +45,7 @@ def command(package: Package) -> Callable[..., int]:
         quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
     ) -> int:
         """Run a scene and write its run folder."""
+        from porescale.common.record.progress import Watch
         from porescale.common.schema.sections import open_scene
 
         scene = require_scene(scene, package.name)
@@ -69,8 +70,12 @@ def command(package: Package) -> Callable[..., int]:
         use_threads(threads)  # numba counts them; unless moving frames were to be checked, it is imported only now
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
-        model = package.build(opened.scene)
-        outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
+        with package.rehearsed(opened.scene):
+            with Watch(opened.name, 0.0, _end(opened.scene), quiet=quiet):
+                model = package.build(opened.scene)
+            outcome = package.drive(
+                model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite
+            )
         if not quiet:
             print(summary(package.name, opened.name, folder, outcome))
             if chosen is not None:
@@ -78,6 +83,11 @@ def command(package: Package) -> Callable[..., int]:
         return 0
 
     return run
+
+
+def _end(scene: Any) -> float:
+    """Time that a scene is to simulate, s; 0 where it does not say so."""
+    return float(getattr(getattr(scene, "time", None), "end", 0.0))
 
 
 def _require_free_choice(quality: str | None, resume: bool) -> None:

@@ -29,9 +29,11 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataC
 from numba.core.errors import NumbaWarning
 from numba.extending import intrinsic, overload
 
+from porescale.common.compiled import library
 from porescale.common.compiled.cache import keep_only_used, mark_used, writable
 from porescale.common.compiled.jit import GIVEN, body_for, cache_folder, prange, prefetch, thread, unchecked_view
 from porescale.common.compiled.kernel_key import Unknown, key_of, warning
+from porescale.common.compiled.turns import TURNS
 
 # A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
 # and gives up at 8 by default.
@@ -40,20 +42,25 @@ llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
 # Where the folder cannot be written numba would cache beside the sources, or give up: compile anew then.
 _KEPT = writable(cache_folder())
 _FLAGS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
-_INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True}
+_INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True, **library.INNER}
+library.use()
 _MEANT = {"prange": (prange, numba.prange), "thread": (thread, vars(numba)["get_thread_id"])}
 """What kernels import from jit.py under names for which numba accepts its own objects only."""
 
 
-def dispatcher(function: FunctionType, options: dict[str, Any]) -> Any:
-    """numba's dispatcher of a function; in the function's module, names of jit.py come to mean numba's own objects."""
+def dispatcher(function: FunctionType, options: dict[str, Any], *, inner: bool = False) -> Any:
+    """numba's dispatcher of a function; in the function's module, names of jit.py come to mean numba's own objects.
+
+    inner : for calls from kernels, not from Python.
+    """
+    options = {**options, **(library.INNER if inner else library.OUTER)}
     names = function.__globals__
     for name, (ours, own) in _MEANT.items():
         if name in function.__code__.co_names and names.get(name) is ours:
             names[name] = own
     made: Any = numba.njit(**options, **_FLAGS)(function)
     if _KEPT:
-        vars(made)["_cache"] = KernelCache(function, options)
+        vars(made)["_cache"] = KernelCache(function, options, inner=inner)
     return made
 
 
@@ -70,7 +77,7 @@ def surroundings() -> str:
     return hashlib.sha256(repr((sources, versions, flags)).encode()).hexdigest()
 
 
-_MACHINERY = ("compiling", "jit", "kernel_key", "simd", "simd_code")
+_MACHINERY = ("compiling", "jit", "kernel_key", "library", "simd", "simd_code")
 
 
 def _described(kind: Any) -> Any:
@@ -140,7 +147,11 @@ class _Files(IndexDataCacheFile):
         """Keep ``data`` under the key."""
         if key is None:
             return
-        self._save_data(f"{key}.nbc", data)
+        try:
+            with TURNS.writing:
+                self._save_data(f"{key}.nbc", data)
+        except OSError:  # no room: other processes compile it, too
+            return
         if not (GIVEN or _Files.cleaned):
             _Files.cleaned = True
             keep_only_used(Path(self._data_path(f"{key}.nbc")), "*.nbc*")
@@ -151,10 +162,27 @@ class KernelCache(FunctionCache):
 
     _impl_class = _Results
 
-    def __init__(self, function: FunctionType, options: dict[str, Any]) -> None:
+    def __init__(self, function: FunctionType, options: dict[str, Any], *, inner: bool) -> None:
         super().__init__(function)
-        self._function, self._options = function, options
+        self._function, self._options, self._inner = function, options, inner
         self._cache_file = _Files(self._cache_path, "", "")
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """What is kept, or None where this process is to compile it; another that does so now is waited for."""
+        found = super().load_overload(sig, target_context)
+        if found is None and not self._inner:
+            name, key = self._function.__name__, self._index_key(sig, target_context.codegen())
+            if TURNS.take(name, Path(self._cache_path) / f"{key or name}"):
+                found = super().load_overload(sig, target_context)
+            if found is not None:
+                TURNS.end()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep what was compiled, if there is room."""
+        super().save_overload(sig, data)
+        if not self._inner:
+            TURNS.end()
 
     def _index_key(self, sig: Any, codegen: Any) -> str | None:
         """Name of the file for these types of arguments; None, with a warning, where there is no key."""

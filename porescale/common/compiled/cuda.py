@@ -23,6 +23,8 @@ from porescale.common.core.errors import Fault, InputError
 
 LEAST_CAPABILITY = (6, 0)
 """Oldest devices: the first with float64 atomics and pre-emption, and the oldest that current drivers serve."""
+WARP = 32
+"""Threads that go together."""
 
 SIMULATOR = "numba's simulator"
 
@@ -94,17 +96,32 @@ def synchronize() -> None:
 
 def to_device(array: Any) -> Any:
     """A copy of the array on the device; InputError where its memory does not suffice."""
+    return _within_memory(lambda: cuda().to_device(np.ascontiguousarray(array)), array.nbytes)
+
+
+def empty_on_device(shape: Any, dtype: Any) -> Any:
+    """An array on the device, of any values; InputError where its memory does not suffice."""
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    return _within_memory(lambda: cuda().device_array(shape, dtype), size)
+
+
+def _within_memory(make: Callable[[], Any], size: int) -> Any:
+    """What ``make`` makes of ``size`` bytes on the device; InputError where its memory does not suffice."""
     try:
-        return cuda().to_device(np.ascontiguousarray(array))
+        return make()
     except Exception as error:  # the driver's own type, which the simulator does not have
         if "OUT_OF_MEMORY" not in str(error):
             raise
-        size = f"{array.nbytes / 2**30:.2f} GiB"
-        raise InputError(Fault("device", "gpu", f"its memory does not hold {size} more")) from None
+        fault = Fault("device", "gpu", f"its memory does not hold {size / 2**30:.2f} GiB more")
+        raise InputError(fault) from None
+
+
+Laws = type | tuple[type, ...]
+"""The law, or laws, of a kernel: of each law function the body is taken for the first of them that has one."""
 
 
 @cache
-def device_kernel(function: FunctionType, law: type, real: type) -> Any:
+def device_kernel(function: FunctionType, law: Laws, real: type) -> Any:
     """Compile a function of arrays and numbers whose threads take their entry by ``grid``: see ``launch``.
 
     law : of the law functions that it calls;  real : np.float32 or np.float64, of ``precision_constants``.
@@ -113,15 +130,31 @@ def device_kernel(function: FunctionType, law: type, real: type) -> Any:
 
 
 @cache
-def device_function(function: FunctionType, law: type, real: type) -> Any:
-    """The device function of a function in plain Python, for a law and a precision."""
+def device_function(function: FunctionType, law: Laws, real: type) -> Any:
+    """The device function of a function in plain Python, for a law, or several, and a precision."""
     return cuda().jit(device=True)(_for_device(function, law, real))
 
 
-def launch(compiled: Any, count: int, block: int, *arguments: Any) -> None:
-    """Run a kernel of ``device_kernel`` with ``count`` threads or more, ``block`` of them in a block."""
+def launch(compiled: Any, count: int, block: int, *arguments: Any, stream: Any = 0) -> None:
+    """Run a kernel of ``device_kernel`` with ``count`` threads or more, at most ``block`` of them in a block.
+
+    Work of the stream 0 waits for that of others which was asked for before it, and that of others for its own.
+    """
     if count > 0:
-        compiled[-(-count // block), block](*arguments)
+        block = min(block, -(-count // WARP) * WARP)
+        compiled[-(-count // block), block, stream](*arguments)
+
+
+def new_stream() -> Any:
+    """A stream of work on the device, beside others but the stream 0."""
+    return cuda().stream()
+
+
+def pinned_array(shape: Any, dtype: Any) -> Any:
+    """Zeros in memory of the host that the device reads and writes while the host goes on."""
+    made = cuda().pinned_array(shape, dtype)
+    made[...] = 0
+    return made
 
 
 def grid() -> int:
@@ -129,7 +162,7 @@ def grid() -> int:
     raise TypeError("this has a meaning in device kernels only")
 
 
-def _for_device(function: FunctionType, law: type, real: type) -> FunctionType:
+def _for_device(function: FunctionType, law: Laws, real: type) -> FunctionType:
     """A copy of the function in whose names everything compiled for the CPU is compiled for the device."""
     names = dict(function.__globals__)
     for name in function.__code__.co_names:
@@ -140,7 +173,7 @@ def _for_device(function: FunctionType, law: type, real: type) -> FunctionType:
     return made
 
 
-def _meaning(value: Any, law: type, real: type) -> Any:
+def _meaning(value: Any, law: Laws, real: type) -> Any:
     """What the value of a global name becomes on the device."""
     if value is np and not simulated():
         return _numpy()
@@ -156,9 +189,10 @@ def _meaning(value: Any, law: type, real: type) -> Any:
     bits = 8 * np.dtype(real).itemsize
     if set(meaning) == {32, 64}:
         return device_function(_constant(meaning[bits]), law, real)
-    body = body_for(meaning, law)
+    laws = law if isinstance(law, tuple) else (law,)
+    body = next((found for it in laws if (found := body_for(meaning, it)) is not None), None)
     if body is None:
-        raise TypeError(f"{value.__name__} has no body for {law.__name__}")
+        raise TypeError(f"{value.__name__} has no body for {' or '.join(it.__name__ for it in laws)}")
     return device_function(body.py_func, law, real)
 
 
@@ -172,7 +206,7 @@ def _constant(known: Any) -> Callable[[Any], Any]:
 def _numpy() -> ModuleType:
     """What device functions use of numpy, in the precision of the argument: numba-cuda does not know numpy's own."""
     made: Any = ModuleType("numpy_on_device")
-    made.sqrt = math.sqrt
+    made.sqrt, made.float64 = math.sqrt, np.float64
     return made  # type: ignore[no-any-return]
 
 

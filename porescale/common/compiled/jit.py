@@ -82,7 +82,7 @@ class Kernel:
     """A function that is compiled when it is first called; also from within other kernels.
 
     py_func : the function in plain Python;  options : numba's for it;  compiled : what numba makes of it, whose
-    attributes it has as well.
+    attributes it has as well;  inner : the same for calls from other kernels.
     """
 
     def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
@@ -91,13 +91,18 @@ class Kernel:
 
     @cached_property
     def compiled(self) -> Any:
-        """numba's dispatcher of the function."""
+        """numba's dispatcher of the function, for calls from Python."""
         return compiler().dispatcher(self.py_func, self.options)
+
+    @cached_property
+    def inner(self) -> Any:
+        """numba's dispatcher of the function, for calls from kernels."""
+        return compiler().dispatcher(self.py_func, self.options, inner=True)
 
     @property
     def _numba_type_(self) -> Any:
-        """Type of this as a name in a kernel: that of the dispatcher."""
-        return self.compiled._numba_type_
+        """Type of this as a name in a kernel."""
+        return self.inner._numba_type_
 
     def __call__(self, *arguments: Any) -> Any:
         """Compile it for the types of these arguments, if that is still to be done, and run it."""

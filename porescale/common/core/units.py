@@ -18,6 +18,23 @@ LONGEST = 64
 _ABSURD = re.compile(r"\d\s*(\*\*|\^)|\d{3}")
 
 
+_USUAL = {
+    "": {"": "1"},
+    "m": {"m": "1", "cm": "0.01", "mm": "0.001", "um": "0.000001", "µm": "0.000001", "km": "1000"},
+    "m^2": {"m^2": "1", "cm^2": "0.0001", "mm^2": "0.000001"},
+    "s": {"s": "1", "ms": "0.001", "us": "0.000001", "µs": "0.000001", "min": "60", "h": "3600"},
+    "m/s": {"m/s": "1", "cm/s": "0.01", "mm/s": "0.001"},
+    "m/s^2": {"m/s^2": "1"},
+    "m^2/s": {"m^2/s": "1", "cm^2/s": "0.0001", "mm^2/s": "0.000001"},
+    "kg/m^3": {"kg/m^3": "1", "g/cm^3": "1000"},
+    "Pa": {"Pa": "1", "kPa": "1000", "MPa": "1000000", "GPa": "1000000000"},
+    "Pa s": {"Pa s": "1", "mPa s": "0.001"},
+    "N/m": {"N/m": "1", "kN/m": "1000"},
+}
+"""Units that most scenes are written in, by the unit wanted, as Pint has them: Pint takes longer to learn its units
+than a scene takes to be checked."""
+
+
 @lru_cache(maxsize=1)
 def _registry() -> Any:
     """Pint's registry, computing in decimals; importing pint takes longer than all the rest, hence here."""
@@ -43,6 +60,8 @@ def _parse(unit: str) -> Any:
 @lru_cache(maxsize=512)
 def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
     """Decimals a and b with value in ``unit`` = a * (value in ``source``) + b.  ValueError if none."""
+    if source in (usual := _USUAL.get(unit, {})):
+        return Decimal(usual[source]), Decimal(0)
     import pint
 
     registry = _registry()
@@ -82,6 +101,8 @@ def _from_text(text: str, unit: str) -> float:
     if match is None:
         raise ValueError("is not a number" + (" with a unit" if unit else ""))
     number, given = match.groups()
+    if given.startswith(","):
+        raise ValueError("has a comma; write a number with a point, and a list as [0.1, 0.2]")
     if not given and unit:
         raise ValueError(f"has no unit; write {number} without quotes for {unit}, or add the unit")
     factor, offset = _factor_and_offset(given, unit)

@@ -259,7 +259,8 @@ def carry(old_start, old_partner, old_carried, start, partner, carried):
         for k in range(start[i], start[i + 1]):
             while old < end and old_partner[old] < partner[k]:
                 old += 1
-            if old < end and old_partner[old] == partner[k]:
-                carried[k, :] = old_carried[old, :]
-            else:
-                carried[k, :] = 0.0
+            known = old < end and old_partner[old] == partner[k]
+            for c in range(
+                carried.shape[1]
+            ):  # rows assigned whole take three seconds to compile: their shapes are tested
+                carried[k, c] = old_carried[old, c] if known else 0.0

@@ -12,6 +12,7 @@ from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
 from porescale.common.record.check_state import check_state
+from porescale.common.record.cost import UNCOUNTED
 from porescale.common.record.model import Model, variable_step
 from porescale.common.record.progress import Watch
 from porescale.common.record.record import CHECKPOINT, Gone, Record, Today, check_changes
@@ -26,7 +27,11 @@ SAVE_SHARE = 0.02
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended: ``outcome`` "finished" or "already finished", and what it took."""
+    """How a run ended: ``outcome`` "finished" or "already finished", and what it took.
+
+    steps_per_second : but for the first blocks, which compile;  recording, finishing : seconds of rows, snapshots and
+    checkpoints between the steps, and of pictures, film and all else after them.
+    """
 
     folder: Path
     outcome: str
@@ -35,6 +40,8 @@ class Outcome:
     seconds: float
     snapshots: int
     steps_per_second: float
+    recording: float = 0.0
+    finishing: float = 0.0
 
 
 def drive(
@@ -52,14 +59,15 @@ def drive(
     after: Callable[[Path], object] | None = None,
     meanwhile: Callable[[Path], object] | None = None,
     today: Today | None = None,
+    finish: float = 0.0,
 ) -> Outcome:
     """Advance ``model`` to ``duration`` (s) and write the run folder.
 
     Rows and snapshots are made at time 0, at multiples of their intervals (s; ``math.inf``: only first and
     last) and at the end.  With a fixed step, times are rounded to whole steps.  Output never changes the
     steps. checkpoint_seconds : wall clock;  card : {"scene": full scene as dict, "seeds": ...} for card.json;
-    after : called with the folder once all data are in place (pictures, film);  meanwhile : called with it whenever
-    a snapshot is on disk.
+    after : called with the folder once all data are in place (pictures, film);  finish : seconds that it is expected to
+    take;  meanwhile : called with the folder whenever a snapshot is on disk.
 
     resume : go on from the checkpoint, bit for bit as the uninterrupted run; without a checkpoint it starts
     from the beginning, and a finished run is left alone.  The scene must be the same but for the keys
@@ -103,7 +111,7 @@ def drive(
             record = Record.resumed(folder, card, model, schedules)
         else:
             record = Record.fresh(folder, card, overwrite=overwrite)
-        with Watch(name, model.time, duration, quiet=quiet) as watch:
+        with Watch(name, model.time, duration, quiet=quiet, finish=finish) as watch:
             return _watched(run, record, watch, after)
 
 
@@ -145,10 +153,11 @@ class _Run:
 
 def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], object] | None) -> Outcome:
     """The loop, and how it may end."""
-    model, first = run.model, run.model.step
+    model, began = run.model, clock.perf_counter()
     try:
         with polite_stop() as stop:
             spent = _loop(run, record, stop, watch)
+        stepped = clock.perf_counter()
         watch.enter("joining snapshots")
         record.close(model, cards.RUNNING)
         if after is not None:
@@ -172,14 +181,39 @@ def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], ob
             if notes:
                 error.add_note(record.last_good())
         raise
-    speed = (model.step - first) / spent if spent > 0 else 0.0
     seconds, count = record.seconds(), record.snapshots
-    return Outcome(record.folder, cards.FINISHED, model.step, model.time, seconds, count, speed)
+    recording, finishing = stepped - began - spent.seconds, clock.perf_counter() - stepped
+    return Outcome(
+        record.folder, cards.FINISHED, model.step, model.time, seconds, count, spent.speed(), recording, finishing
+    )
 
 
-def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> float:
-    """Advance to the end; returns the wall-clock seconds spent in the model's steps but the first ones."""
-    model, rate, spent = run.model, 0.0, 0.0
+@dataclass
+class _Spent:
+    """Steps and wall-clock seconds of this session, and of its first blocks, which compile kernels."""
+
+    steps: int = 0
+    seconds: float = 0.0
+    blocks: int = 0
+    early: tuple[int, float] = (0, 0.0)
+
+    def block(self, steps: int, seconds: float) -> None:
+        """Count a block of steps."""
+        self.steps, self.seconds, self.blocks = self.steps + steps, self.seconds + seconds, self.blocks + 1
+        if self.blocks == UNCOUNTED:
+            self.early = self.steps, self.seconds
+
+    def speed(self) -> float:
+        """Steps a second but for the first blocks, or of all where there are no others; 0 where there are none."""
+        steps, seconds = self.steps - self.early[0], self.seconds - self.early[1]
+        if not steps:
+            steps, seconds = self.steps, self.seconds
+        return steps / seconds if seconds > 0 else 0.0
+
+
+def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> _Spent:
+    """Advance to the end; returns what was spent in the model's steps."""
+    model, rate, spent = run.model, 0.0, _Spent()
     if record.saved_step is None:
         model.check()
         _record_due(run, record)
@@ -192,7 +226,8 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> float:
         assert run.step_seconds in (None, model.step_seconds), "a varying step needs variable_step = True"
         wall = clock.perf_counter() - start
         record.cost.block(model.step - before, clock.process_time() - busy)
-        rate, spent = (model.step - before) / max(wall, 1e-9), spent + wall
+        rate = (model.step - before) / max(wall, 1e-9)
+        spent.block(model.step - before, wall)
         watch.update(model.step, model.time)
         _after_block(run, record)
         if stop and not run.ended(model.step, model.time):

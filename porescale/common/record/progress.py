@@ -12,35 +12,38 @@ from rich.progress import (
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
-    TimeRemainingColumn,
 )
 from rich.text import Text
+
+from porescale.common.compiled.turns import TURNS
+from porescale.common.record.cost import UNCOUNTED
 
 PATIENCE = 2.0
 """Seconds after which a person wonders what happens."""
 LINE_EVERY = 10.0
+STARTING = "starting"
 HALT, IDLE = 2.0, 0.01
 """Seconds by which a wait must last too long to count as time in which the process was stopped (SIGSTOP, Ctrl-Z), and
 the share of them in which it must have had no more than the processor: a busy machine gives more."""
-COMPILING = "compiling kernels"
 
 
 class Watch:
     """Context that shows the progress of a run from ``start`` to ``end`` (s of simulated time).
 
     quiet : nothing at all.  On a terminal a bar appears after two seconds, in a notebook one line that is written over;
-    otherwise plain lines on stderr, the first after ten seconds.  Until the first :meth:`update` the run counts as
-    compiling its kernels.
+    otherwise plain lines on stderr, the first after ten seconds.  A kernel that is being compiled is named.
+    finish : seconds that joining, pictures and film are expected to take after the last step.
     """
 
-    def __init__(self, title: str, start: float, end: float, *, quiet: bool = False) -> None:
-        self.title, self.start, self.end, self.quiet = title, start, end, quiet
+    def __init__(self, title: str, start: float, end: float, *, quiet: bool = False, finish: float = 0.0) -> None:
+        self.title, self.start, self.end, self.quiet, self.finish = title, start, end, quiet, finish
         self.console = Console(stderr=True)
         self.bar: Progress | None = None
-        self.phase = COMPILING
-        self.time, self.step = start, 0
+        self.phase = STARTING
+        self.time, self.step, self.updates = start, 0, 0
         self.began = clock.perf_counter()
         self.running_since: float | None = None
+        self.finishing_since: float | None = None
         self.stopped = 0.0
         self.last_line = self.began
         self._stop = threading.Event()
@@ -62,15 +65,21 @@ class Watch:
 
     def update(self, step: int, time: float) -> None:
         """The run has come to ``step`` at ``time``, s."""
-        self.step, self.time = step, time
-        if self.running_since is None:
+        self.step, self.time, self.updates = step, time, self.updates + 1
+        if self.updates in (1, UNCOUNTED):  # until then kernels are compiled, or read from disk
             self.running_since = clock.perf_counter()
             self.start, self.stopped = time, 0.0
             self.phase = "running"
 
     def enter(self, phase: str) -> None:
-        """Name what happens now, e.g. "writing pictures and film"."""
+        """Name what happens after the steps, e.g. "writing pictures and film"."""
         self.phase = phase
+        if self.finishing_since is None:
+            self.finishing_since = clock.perf_counter()
+
+    def doing(self) -> str:
+        """What happens now, in words."""
+        return f"{self.phase}, compiling kernel {TURNS.count}, {TURNS.name}" if TURNS.name else self.phase
 
     def say(self, text: str) -> None:
         """Print one line of text, unless quiet."""
@@ -78,17 +87,22 @@ class Watch:
             self.console.print(Text(text), highlight=False, soft_wrap=True)
 
     def left(self) -> float | None:
-        """Seconds left at the mean speed since the first step, without the time in which the process was stopped; None
-        while unknown."""
+        """Seconds left, all that follows the steps included; None while unknown.
+
+        Steps are expected to go on at their mean speed, rows, snapshots and checkpoints included, since kernels were
+        compiled; time in which the process was stopped does not count.
+        """
+        if self.finishing_since is not None:
+            return max(0.0, self.finish - (clock.perf_counter() - self.finishing_since)) if self.finish else None
         if self.running_since is None or self.time <= self.start:
             return None
         spent = clock.perf_counter() - self.running_since - self.stopped
-        return spent * (self.end - self.time) / (self.time - self.start)
+        return spent * (self.end - self.time) / (self.time - self.start) + self.finish
 
     def line(self) -> str:
         """Progress of the run as one line of text."""
-        share = 100 * self.time / self.end if self.end else 100.0
-        text = f"{self.title}: {self.phase}, t = {self.time:.4g} of {self.end:.4g} s ({share:.0f} %)"
+        share = min(100.0, 100 * self.time / self.end) if self.end else 100.0  # the last step may go beyond the end
+        text = f"{self.title}: {self.doing()}, t = {self.time:.4g} of {self.end:.4g} s ({share:.0f} %)"
         text += f", step {self.step}"
         left = self.left()
         return text if left is None else f"{text}, {duration(left)} left"
@@ -139,19 +153,20 @@ class Watch:
             TaskProgressColumn(),
             TextColumn("{task.fields[where]}"),
             TimeElapsedColumn(),
-            TextColumn("left"),
-            TimeRemainingColumn(),
+            TextColumn("{task.fields[left]}"),
         )
         with Progress(*columns, console=self.console, transient=True) as bar:
-            task = bar.add_task(self.title, start=False, total=None, where="")
+            task = bar.add_task(self.title, start=False, total=None, where="", left="")
             started = False
             while not self._wait(0.2):
                 if self.running_since is not None and not started:
                     bar.start_task(task)
                     started = True
+                left = self.left()
                 bar.update(
                     task,
-                    description=f"{self.title}: {self.phase}",
+                    left="" if left is None else f"{duration(left)} left",
+                    description=f"{self.title}: {self.doing()}",
                     total=self.end if started else None,
                     completed=self.time,
                     where=f"t = {self.time:.4g} s",

@@ -129,13 +129,18 @@ def repeated(
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
-    """All repeats of a point.  of : the point;  over : keys in which they differ;  ends : of those that have ended, in
-    their order;  asked : how many there are to be."""
+    """All repeats of a point.  of : the point;  over : keys in which they differ;  members : their names, in their
+    order;  ends : of those that have ended."""
 
     of: Point
     over: tuple[str, ...]
+    members: tuple[str, ...]
     ends: tuple[Ended, ...]
-    asked: int
+
+    @property
+    def asked(self) -> int:
+        """How many there are to be."""
+        return len(self.members)
 
     @property
     def finished(self) -> list[Ended]:
@@ -168,8 +173,8 @@ def ensembles(points: Sequence[Point], ends: Sequence[Ended]) -> list[Ensemble]:
         Ensemble(
             of,
             tuple(text.partition("=")[0] for text in members[0].over),
+            tuple(it.name for it in members),
             tuple(ended[it.name] for it in members if it.name in ended),
-            len(members),
         )
         for of, members in groups.items()
     ]

@@ -43,7 +43,12 @@ def _cells(one: Ensemble, keys: Sequence[str], row: Mapping[str, Any], known: Ju
     """The cells of a line; what there is not is empty."""
     made: dict[str, Any] = {"name": one.of.name, "quality": one.of.quality or ""}
     made |= {key: one.of.value(key) for key in keys}
-    made |= {"over": " ".join(one.over), "asked": one.asked, "finished": len(one.finished)}
+    made |= {
+        "over": " ".join(one.over),
+        "members": " ".join(one.members),
+        "asked": one.asked,
+        "finished": len(one.finished),
+    }
     made |= {"quantity": str(row.get("name", "")), "unit": str(row.get("unit", ""))}
     numbers: dict[str, float | None] = dict.fromkeys(("n", *WORTH))
     judgement: dict[str, Any] = dict.fromkeys(("value", "tolerance", "inside", "verdict", "needed", "remark"), None)

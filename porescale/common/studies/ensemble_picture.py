@@ -73,7 +73,7 @@ def picture(found: Sequence[Ensemble], rows: Sequence[Mapping[str, Any]], tables
         for row in rows:
             if (str(row.get("file", "series")), str(row["column"])) == (file, column):
                 _allowed(axes, row)
-        axes.set_ylabel(column, fontsize=8)
+        axes.set_ylabel(column.removesuffix(" ()"), fontsize=8)
         axes.set_xlabel(TIME, fontsize=8)
         axes.tick_params(labelsize=7)
         axes.margins(x=0.01)

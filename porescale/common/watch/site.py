@@ -123,12 +123,17 @@ class Site:
         return self._sweep(parts) if kind == SWEEP else None
 
     def _sweep(self, parts: Sequence[str]) -> Answer | None:
-        """``points``, ``picture/NAME``, and the pages and data of each run, ``run/NAME/…``."""
+        """``points``, ``picture/NAME``, ``ensembles``, ``band/NAME``; pages and data of each run, ``run/NAME/…``."""
         if self._points is None:
             self._points = Points(self.folder, self.program)
         match list(parts):
             case ["points"]:
                 return _json(self._points.rows())
+            case ["ensembles"]:
+                return _json(self._points.ensembles())
+            case ["band", name]:
+                found = self._points.band(name)
+                return None if found is None else _json(found)
             case ["picture", name]:
                 content = self._points.picture(name)
                 return None if content is None else Answer(content, "image/png")

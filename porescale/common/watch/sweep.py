@@ -1,4 +1,5 @@
-"""A folder of runs, as a sweep writes it, looked at while its points run: one row a point, and a small picture."""
+"""A folder of runs, as a sweep writes it, looked at while its points run: one row a point, a small picture, and what
+their ensembles are worth."""
 
 from __future__ import annotations
 
@@ -9,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 import cv2
 
 from porescale.common.core.errors import InputError
+from porescale.common.page.tables import over_time
+from porescale.common.record.card import FINISHED
 from porescale.common.record.read_card import NAME as CARD
+from porescale.common.record.read_card import read_card
+from porescale.common.studies.ensemble_files import NAME as ENSEMBLES
+from porescale.common.studies.ensemble_picture import band
+from porescale.common.studies.quantities import TIME
 from porescale.common.studies.sweep_files import COSTS
 from porescale.common.studies.sweep_files import NAME as TABLE
 from porescale.common.watch.growing import Growing, inside
@@ -75,9 +82,50 @@ class Points:
         row["numbers"] = {title: _number(cell) for title, cell in line.items() if title not in known}
         return row | {"problem": row["state"]["problem"]}
 
-    def _table(self) -> list[dict[str, str]]:
-        """The lines of sweep.csv as they are; none where there is none."""
-        path = self.folder / f"{TABLE}.csv"
+    def ensembles(self) -> list[dict[str, Any]]:
+        """The ensembles of ensemble.csv: {"name", "members" (names of their points), "finished" (of these), "said" (how
+        many of how many), "lines" (its quantities, numbers as such)}."""
+        made: dict[str, dict[str, Any]] = {}
+        there = set(self.names())
+        for line in self._table(ENSEMBLES):
+            name, members = line.get("name", ""), line.get("members", "").split()
+            if name not in made:
+                outcomes = {it: self._outcome(it) for it in members if it in there}
+                done = [it for it, outcome in outcomes.items() if outcome == FINISHED]
+                others = [it for it in outcomes.values() if it != FINISHED]
+                counts = ", ".join(f"{others.count(it)} {it}" for it in dict.fromkeys(others))
+                said = f"{len(done)} of {len(members)} finished" + (f" ({counts})" if counts else "")
+                made[name] = {"name": name, "members": members, "finished": done, "said": said, "lines": []}
+            made[name]["lines"].append({key: _number(cell) for key, cell in line.items() if key != "members"})
+        return list(made.values())
+
+    def _outcome(self, name: str) -> str:
+        """How a point stands by its card."""
+        try:
+            return str(read_card(self.folder / name).get("outcome"))
+        except (InputError, OSError):
+            return "unreadable"
+
+    def band(self, name: str) -> dict[str, Any] | None:
+        """Means of the finished members of an ensemble over time, as a table of a page, with "half" of Student's
+        interval for each column; None where there is no such ensemble, or none has finished."""
+        found = next((it for it in self.ensembles() if it["name"] == name), None)
+        if found is None or not found["finished"]:
+            return None
+        series = [dict(self._growing(it).run().series) for it in found["finished"]]
+        shared = [column for column in series[0] if column != TIME and all(column in it for it in series)]
+        curves = {column: band([(it[TIME], it[column]) for it in series]) for column in shared}
+        known = {column: it for column, it in curves.items() if it is not None}
+        if not known:
+            return None
+        times = {TIME: next(iter(known.values())).time}
+        means = over_time("series", times | {column: it.mean for column, it in known.items()})
+        halves = over_time("series", times | {column: it.half for column, it in known.items()})
+        return means | {"half": halves["data"]}
+
+    def _table(self, name: str = TABLE) -> list[dict[str, str]]:
+        """The lines of sweep.csv, or another table, as they are; none where there is none."""
+        path = self.folder / f"{name}.csv"
         if not inside(self.folder, path):
             return []
         with open(path, newline="", encoding="utf-8", errors="replace") as file:

@@ -11,7 +11,7 @@ line: a disc d cells wide needs 2 (d + 2) of them.  Derived from G being the are
 
 import math
 
-from porescale.common.compiled.jit import inline, parallel_kernel, prange
+from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange
 from porescale.coupling.coverage.rows import BLOCK
 
 CHUNKS = 64
@@ -53,6 +53,13 @@ def quarter_area(a, r):
 
 
 @inline
+def line_at(distance, r):
+    """A grid line's distance from the centre clamped to [-r, r], G of it with its sign, and the sign."""
+    a = min(max(distance, -r), r)
+    return a, math.copysign(quarter_area(abs(a), r), a), math.copysign(1.0, a)
+
+
+@inline
 def mark_lines(first, count, r, at, area, side):
     """What corners need of their grid lines, the first of them at ``first`` from the centre.
 
@@ -63,10 +70,7 @@ def mark_lines(first, count, r, at, area, side):
         distance, g, sign = at[b : b + BLOCK], area[b : b + BLOCK], side[b : b + BLOCK]
         offset = first + b
         for i in range(BLOCK):
-            a = min(max(offset + i, -r), r)
-            distance[i] = a
-            g[i] = math.copysign(quarter_area(abs(a), r), a)
-            sign[i] = math.copysign(1.0, a)
+            distance[i], g[i], sign[i] = line_at(offset + i, r)
     at[count], area[count], side[count] = at[count - 1], area[count - 1], side[count - 1]
 
 
@@ -77,30 +81,68 @@ def corner_area(a, ga, sa, b, sb, outer, room):
 
 
 @inline
+def across(line, r):
+    """What ``corner_area`` needs of a line along x: b, sb, outer and room;  line: ``line_at``."""
+    b, gb, side = line
+    quarter = 0.25 * math.pi * r * r
+    return b, side, gb - side * quarter, r * r - b * b
+
+
+@inline
+def strip_area(left, right, line):
+    """Area of a disc between two lines along y, from the centre's height to a line along x: ``line_at`` of the two, and
+    ``across`` of the third."""
+    b, side, outer, room = line
+    beyond = corner_area(right[0], right[1], right[2], b, side, outer, room)
+    return beyond - corner_area(left[0], left[1], left[2], b, side, outer, room)
+
+
+@inline
+def least_part(r):
+    """What counts as none, so that cells are full and empty to the bit: what is left of four areas of r², each good to
+    four roundings."""
+    return 16 * 2.3e-16 * max(r * r, 1.0)
+
+
+@inline
+def full_or_empty(part, little):
+    """The part of a cell, or all or none of it where little is missing."""
+    part = part if part > little else 0.0
+    return part if part < 1.0 - little else 1.0
+
+
+@inline
+def place_corner(n, centre, r, corner):
+    """The cell at the lower left of disc n's patch, into corner (n, 2)."""
+    there = abs(centre[n, 0]) < FAR and abs(centre[n, 1]) < FAR  # nor no number, as when a run blows up
+    corner[n, 0] = math.floor(centre[n, 0] - r) if there else NOWHERE
+    corner[n, 1] = math.floor(centre[n, 1] - r) if there else NOWHERE
+
+
+@kernel
+def place_corners(centre, radius, corner):
+    """``place_corner`` of discs of centre (n, 2) and radius (n,)."""
+    for n in range(radius.shape[0]):
+        place_corner(n, centre, radius[n], corner)
+
+
+@inline
 def cover_disc(x, y, r, x0, y0, height, stride, fraction, lines):
     """Fractions of the cells around one disc, centre (x, y), into fraction (height * stride,); lines: scratch."""
     a, ga, sa, b, gb, sb, below = lines[0], lines[1], lines[2], lines[3], lines[4], lines[5], lines[6, :BLOCK]
     mark_lines(x0 - x, stride, r, a, ga, sa)
     mark_lines(y0 - y, stride, r, b, gb, sb)
-    quarter = 0.25 * math.pi * r * r
-    # Full and empty to the bit: what is left of four areas of r², each good to four roundings.
-    little = 16 * 2.3e-16 * max(r * r, 1.0)
+    little = least_part(r)
     for at in range(0, stride, BLOCK):
         p, gp, sp = a[at : at + BLOCK], ga[at : at + BLOCK], sa[at : at + BLOCK]
         q, gq, sq = a[at + 1 : at + 1 + BLOCK], ga[at + 1 : at + 1 + BLOCK], sa[at + 1 : at + 1 + BLOCK]
         for j in range(height + 1):
-            side = sb[j]
-            outer = gb[j] - side * quarter
-            room = r * r - b[j] * b[j]
-            line = b[j]
+            line = across((b[j], gb[j], sb[j]), r)
             row = max(j - 1, 0) * stride + at  # the first line has no cells below it: they come out right with the next
             e = fraction[row : row + BLOCK]
             for i in range(BLOCK):
-                right = corner_area(q[i], gq[i], sq[i], line, side, outer, room)
-                strip = right - corner_area(p[i], gp[i], sp[i], line, side, outer, room)
-                part = strip - below[i]
-                part = part if part > little else 0.0
-                e[i] = part if part < 1.0 - little else 1.0
+                strip = strip_area((p[i], gp[i], sp[i]), (q[i], gq[i], sq[i]), line)
+                e[i] = full_or_empty(strip - below[i], little)
                 below[i] = strip
 
 
@@ -125,9 +167,6 @@ def cover(centre, radius, patches, lines):
         for n in range(chunk * count // lines.shape[0], (chunk + 1) * count // lines.shape[0]):
             r = radius[n]
             patch = fraction[start[n] : start[n] + stride[n] * height[n]]
-            there = abs(centre[n, 0]) < FAR and abs(centre[n, 1]) < FAR  # nor no number, as when a run blows up
-            x0 = math.floor(centre[n, 0] - r) if there else NOWHERE
-            y0 = math.floor(centre[n, 1] - r) if there else NOWHERE
-            corner[n, 0] = x0
-            corner[n, 1] = y0
+            place_corner(n, centre, r, corner)
+            x0, y0 = corner[n, 0], corner[n, 1]
             cover_disc(centre[n, 0], centre[n, 1], r, x0, y0, height[n], stride[n], patch, lines[chunk])

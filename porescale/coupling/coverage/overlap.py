@@ -42,25 +42,34 @@ def common(x, y, x1, y1, r1, x2, y2, r2):
     return total / SUB_ROWS
 
 
+@inline
+def subtract_in_row(y, n, m, centre, radius, patches):
+    """``subtract_overlap`` of discs n and m in row ``y``, where both have one."""
+    corner, height, stride, start = patches.corner, patches.height, patches.stride, patches.start
+    fraction = patches.fraction
+    if not (0 <= y - corner[n, 1] < height[n] and 0 <= y - corner[m, 1] < height[m]):
+        return
+    left = max(corner[n, 0], corner[m, 0])
+    right = min(corner[n, 0] + stride[n], corner[m, 0] + stride[m])
+    one = start[n] + (y - corner[n, 1]) * stride[n] - corner[n, 0]
+    other = start[m] + (y - corner[m, 1]) * stride[m] - corner[m, 0]
+    for x in range(left, right):
+        if 0.0 < fraction[one + x] < 1.0 and 0.0 < fraction[other + x] < 1.0:
+            both = common(
+                float(x), float(y), centre[n, 0], centre[n, 1], radius[n], centre[m, 0], centre[m, 1], radius[m]
+            )
+            fraction[one + x] = max(0.0, np.float64(fraction[one + x]) - 0.5 * both)
+            fraction[other + x] = max(0.0, np.float64(fraction[other + x]) - 0.5 * both)
+
+
 @kernel
 def subtract_overlap(centre, radius, pairs, patches):
     """Take what two discs of a pair have in common off them, in cells that neither fills.
 
     centre (n, 2), radius (n,) cells;  pairs (p, 2).  Overwrites ``patches.fraction``, which ``cover`` has filled.
     """
-    corner, height, stride, start = patches.corner, patches.height, patches.stride, patches.start
-    fraction = patches.fraction
+    corner, height = patches.corner, patches.height
     for p in range(pairs.shape[0]):
         n, m = pairs[p, 0], pairs[p, 1]
-        left = max(corner[n, 0], corner[m, 0])
-        right = min(corner[n, 0] + stride[n], corner[m, 0] + stride[m])
         for y in range(max(corner[n, 1], corner[m, 1]), min(corner[n, 1] + height[n], corner[m, 1] + height[m])):
-            one = start[n] + (y - corner[n, 1]) * stride[n] - corner[n, 0]
-            other = start[m] + (y - corner[m, 1]) * stride[m] - corner[m, 0]
-            for x in range(left, right):
-                if 0.0 < fraction[one + x] < 1.0 and 0.0 < fraction[other + x] < 1.0:
-                    both = common(
-                        float(x), float(y), centre[n, 0], centre[n, 1], radius[n], centre[m, 0], centre[m, 1], radius[m]
-                    )
-                    fraction[one + x] = max(0.0, fraction[one + x] - 0.5 * both)
-                    fraction[other + x] = max(0.0, fraction[other + x] - 0.5 * both)
+            subtract_in_row(y, n, m, centre, radius, patches)

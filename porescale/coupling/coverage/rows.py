@@ -151,6 +151,56 @@ def blocks_inside(base, stride, nx):
 
 
 @inline
+def motion_of_row(n, j, patches, motion):
+    """How the cells of row ``j`` of body n's patch move: what ``motion_of_block`` makes blocks of.
+
+    (x, y) from the centre to its first cell, turning and twist (spin and its correction), vx and cx, the part that all
+    its cells have and the correction of full ones, and vy, cy of its first cell.
+    """
+    real = patches.fraction.dtype.type
+    velocity, spin, shift = motion.velocity, motion.spin, motion.shift
+    ry = patches.corner[n, 1] + j + 0.5 - motion.centre[n, 1]
+    rx = patches.corner[n, 0] + 0.5 - motion.centre[n, 0]
+    return (
+        rx,
+        ry,
+        real(spin[n]),
+        real(shift[n, 2]),
+        real(velocity[n, 0] - spin[n] * ry),
+        real(shift[n, 0] - shift[n, 2] * ry),
+        velocity[n, 1] + spin[n] * rx,
+        shift[n, 1] + shift[n, 2] * rx,
+    )
+
+
+@inline
+def motion_of_block(n, b, row, patches, motion):
+    """How the block that begins with cell ``b`` of a row moves;  row: ``motion_of_row``.
+
+    (x, y) from the centre to its first cell, turning and twist, vx and cx, vy and cy of its first cell.
+    """
+    real = patches.fraction.dtype.type
+    rx, ry, turning, twist, vx, cx, vy, cy = row
+    return (
+        real(rx + b),
+        real(ry),
+        turning,
+        twist,
+        vx,
+        cx,
+        real(vy + motion.spin[n] * b),
+        real(cy + motion.shift[n, 2] * b),
+    )
+
+
+@inline
+def solid_velocity(e, i, block):
+    """Velocity of a body in cell ``i`` of a block of which it covers e;  block: ``motion_of_block``."""
+    _, _, turning, twist, vx, cx, vy, cy = block
+    return vx + e * cx, vy + turning * i + e * (cy + twist * i)
+
+
+@inline
 def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
     """Add up the solid fractions of one row, and fractions times solid velocity at the cells' centres.
 
@@ -160,7 +210,6 @@ def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
     BLOCK), whose fourth row, where rims are soft, gets fractions times theta; returns the first column that may be
     covered and one past the last.
     """
-    centre, velocity, spin, shift = motion.centre, motion.velocity, motion.spin, motion.shift
     nx = scratch.shape[1] - 2 * BLOCK
     s, sx, sy = scratch[0], scratch[1], scratch[2]
     leftmost = nx
@@ -176,28 +225,23 @@ def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
         stride = patches.stride[n]
         at = patches.start[n] + j * stride
         base = patches.corner[n, 0]
-        turning = ramp.dtype.type(spin[n])
-        vx = ramp.dtype.type(velocity[n, 0] - spin[n] * (patches.corner[n, 1] + j + 0.5 - centre[n, 1]))
-        vy0 = velocity[n, 1] + spin[n] * (base + 0.5 - centre[n, 0])
-        twist = ramp.dtype.type(shift[n, 2])
-        cx = ramp.dtype.type(shift[n, 0] - shift[n, 2] * (patches.corner[n, 1] + j + 0.5 - centre[n, 1]))
-        cy0 = shift[n, 1] + shift[n, 2] * (base + 0.5 - centre[n, 0])
+        row = motion_of_row(n, j, patches, motion)
         if periodic_x:
             base %= nx
         while base + stride > 0:  # once, or again for what lies beyond a periodic side
             first, last = blocks_inside(base, stride, nx)
             for b in range(first, last, BLOCK):
-                vy = ramp.dtype.type(vy0 + spin[n] * b)
-                cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
+                block = motion_of_block(n, b, row, patches, motion)
                 e = unchecked_view(patches.fraction, at + b, BLOCK)
                 x = base + b + BLOCK
                 t = unchecked_view(s, x, BLOCK)
                 tx = unchecked_view(sx, x, BLOCK)
                 ty = unchecked_view(sy, x, BLOCK)
                 for i in range(BLOCK):
+                    vx, vy = solid_velocity(e[i], ramp[i], block)
                     t[i] += e[i]
-                    tx[i] += e[i] * (vx + e[i] * cx)
-                    ty[i] += e[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i]))
+                    tx[i] += e[i] * vx
+                    ty[i] += e[i] * vy
                 if scratch.shape[0] > 3:
                     softness = ramp.dtype.type(motion.theta[n])
                     summed = unchecked_view(scratch[3], x, BLOCK)

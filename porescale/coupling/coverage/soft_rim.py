@@ -63,23 +63,37 @@ def follow_slip(rim, share, slip):
 
 
 @inline
+def filtered(before, last, here, s):
+    """(s, 1 - 2 s, s) of three cells side by side, those ``before``, ``last`` and ``here``."""
+    return s * (np.float64(before) + here) + (1.0 - 2.0 * s) * np.float64(last)
+
+
+@inline
+def filter_row(row, stride, s):
+    """Filter a row (stride,) of a patch, one cell to the right, in place."""
+    for i in range(stride - 1, -1, -1):
+        row[i] = filtered(row[i - 2] if i > 1 else 0.0, row[i - 1] if i > 0 else 0.0, row[i], s)
+
+
+@inline
+def filter_cell(patch, i, j, stride, s):
+    """Filter cell ``i`` of row ``j`` of a patch along y, one cell up; the rows above must have been."""
+    below = patch[(j - 2) * stride + i] if j > 1 else 0.0
+    last = patch[(j - 1) * stride + i] if j > 0 else 0.0
+    patch[j * stride + i] = filtered(below, last, patch[j * stride + i], s)
+
+
+@inline
 def filter_patch(patch, height, stride, s):
     """Filter a patch (height * stride,) by (s, 1 - 2 s, s) both ways, one cell up and to the right, in place.
 
     The last two columns and rows must be empty before.
     """
-    middle = 1.0 - 2.0 * s
     for j in range(height):
-        row = patch[j * stride : (j + 1) * stride]
-        for i in range(stride - 1, -1, -1):
-            left = row[i - 2] if i > 1 else 0.0
-            here = row[i - 1] if i > 0 else 0.0
-            row[i] = s * (left + row[i]) + middle * here
+        filter_row(patch[j * stride : (j + 1) * stride], stride, s)
     for j in range(height - 1, -1, -1):
         for i in range(stride):
-            below = patch[(j - 2) * stride + i] if j > 1 else 0.0
-            here = patch[(j - 1) * stride + i] if j > 0 else 0.0
-            patch[j * stride + i] = s * (below + patch[j * stride + i]) + middle * here
+            filter_cell(patch, i, j, stride, s)
 
 
 @parallel_kernel
@@ -99,14 +113,15 @@ def filter_patches(theta, theta2, patches):
 
 
 class SoftRim:
-    """Soft rims of discs.  slip (n,): low-passed, lattice units, what goes on from step to step;  theta (n,)."""
+    """Soft rims of discs.  slip (n,): low-passed, lattice units, what goes on from step to step;  theta, theta2 (n,);
+    sums (n, 2): see ``follow_slip``."""
 
     def __init__(
         self, radius: NDArray[np.floating], radius_shift: float, relaxation_time: float, theta: NDArray[np.floating]
     ) -> None:
         self.radius, self.radius_shift, self.viscosity = radius, radius_shift, (relaxation_time - 0.5) / 3
         self.theta, self.theta2 = theta, np.zeros(len(radius))
-        self.slip, self._sums = np.zeros(len(radius)), np.zeros((len(radius), 2))
+        self.slip, self.sums = np.zeros(len(radius)), np.zeros((len(radius), 2))
 
     def soften(self, covering_radius: NDArray[np.floating]) -> None:
         """Softness of this step; overwrites covering_radius (n,), cells."""
@@ -120,5 +135,9 @@ class SoftRim:
 
     def follow(self, patches: Patches, ny: int, periodic_y: bool, row_load: NDArray[np.floating]) -> None:
         """Store the slip of the step done."""
-        sum_rim_slip(patches.corner, patches.height, ny, periodic_y, row_load, self._sums)
-        follow_slip(self._sums, SLIP_SHARE, self.slip)
+        sum_rim_slip(patches.corner, patches.height, ny, periodic_y, row_load, self.sums)
+        self.low_pass()
+
+    def low_pass(self) -> None:
+        """Store the slip of a step whose ``sums`` there are."""
+        follow_slip(self.sums, SLIP_SHARE, self.slip)

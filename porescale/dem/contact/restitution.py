@@ -12,6 +12,7 @@ from dataclasses import fields
 from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.roots import brent
 
 
 def contact_phase(h: float, release: str) -> float:
@@ -54,9 +55,7 @@ def ratio_from_restitution(restitution: float, release: str) -> float:
         """What the phase of ``h`` is above that wanted; 0 at the root."""
         return h * contact_phase(h, release) - wanted
 
-    from scipy.optimize import brentq  # takes longer to import than a scene to be judged
-
-    return float(brentq(excess, 0.0, highest, xtol=1e-15, rtol=1e-14))
+    return brent(excess, 0.0, highest, xtol=1e-15, rtol=1e-14)
 
 
 def refuse(law: Any, units: Mapping[str, str], positive: Collection[str]) -> None:

@@ -5,8 +5,9 @@ out on the device (readings.py).  What reads the populations themselves (stress,
 first and is the CPU's code, so a checkpoint holds nothing of a device and goes on where one likes.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -29,6 +30,13 @@ CELLS_IN_BLOCK, LINKS_IN_BLOCK = 256, 64
 kernel_of: Any = cache(device_kernel)
 
 
+@dataclass(frozen=True)
+class DeviceSweep:
+    """A sweep over the cells that runs on the device: ``step`` (padded populations there, parity, law of collision)."""
+
+    step: Callable[[Any, int, Any], None]
+
+
 class OpenSide(NamedTuple):
     """Arrays of `OpenLinks` on the device, in the order of let_in_links.  even, odd : slots, and where they go."""
 
@@ -45,6 +53,8 @@ class DeviceFluid(Fluid):
 
     populations : the CPU's copy, brought up to date by whatever reads it here; ``fetch`` before reading it otherwise.
     """
+
+    on_device = True
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         require_device()
@@ -77,16 +87,19 @@ class DeviceFluid(Fluid):
             self._there.copy_to_host(self.padded)
             self._fetched = True
 
-    def advance(self, cells: Sweep = sweep, *extra: Any) -> None:
-        """One step of plain fluid, as ``Fluid.advance``; ValueError with another sweep."""
-        if cells is not sweep:
-            raise ValueError("a fluid on the device takes no other sweep than that of plain fluid")
+    def advance(self, cells: Sweep | DeviceSweep = sweep, *extra: Any) -> None:
+        """One step, as ``Fluid.advance``; ValueError with a sweep of the CPU other than that of plain fluid."""
+        if cells is not sweep and not isinstance(cells, DeviceSweep):
+            raise ValueError("a fluid on the device takes no other sweep of the CPU than that of plain fluid")
         self.send()
         self._fetched = False
         odd, law, flat = self.step % 2, self.law_of_sweep, self._there.reshape(self.padded.size)
         if odd:
             self._exchange(flat, +1.0)
-        launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, self.nx, odd, law)
+        if isinstance(cells, DeviceSweep):
+            cells.step(self._there, odd, law)
+        else:
+            launch(self._kernel(sweep_cells), self.nx * self.ny, CELLS_IN_BLOCK, self._there, self.nx, odd, law)
         if odd:
             self._exchange(flat, -1.0)
         halo, inner = self._links

@@ -2,11 +2,13 @@
 
 import math
 import sys
+from decimal import Decimal
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from porescale.common.core import units
 from porescale.common.core.units import to_si
 from tests.reference.waiting import done
 
@@ -62,6 +64,8 @@ def test_texts_with_units_become_si(text: str, unit: str, value: float) -> None:
         ("1 parsnip", "m", "unknown unit 'parsnip'"),
         ("1", "m", "has no unit"),
         ("wide", "m", "is not a number with a unit"),
+        ("1,5 mm", "m", "has a comma; write a number with a point"),
+        ("0.3,-9.81", "m/s^2", "and a list as [0.1, 0.2]"),
         ("1 m**9**9**9", "m", "unknown unit"),
         ("1 m)", "m", "unknown unit"),
         ("1e99999999999 m", "m", "fits"),
@@ -84,3 +88,24 @@ def test_what_is_no_quantity_is_refused_in_words(value: object, unit: str, words
 def test_numbers_never_load_pint() -> None:
     code = "import sys; from porescale.common.core.units import to_si; to_si(1.0, 'm'); print('pint' in sys.modules)"
     assert done([sys.executable, "-c", code]).stdout.strip() == "False"
+
+
+def test_usual_units_are_pints() -> None:
+    for unit, known in units._USUAL.items():
+        for source, factor in known.items():
+            one, zero = pints(source, unit)
+            assert (one - zero, zero) == (Decimal(factor), 0), (source, unit)
+
+
+def test_a_wrong_factor_is_seen() -> None:  # the twin that must fail
+    one, zero = pints("cm", "m")
+    assert one - zero != Decimal(units._USUAL["m"]["mm"])
+    assert zero == 0
+
+
+def pints(source: str, unit: str) -> tuple[Decimal, Decimal]:
+    """One and zero of a unit in another, by Pint alone."""
+    registry = units._registry()
+    given, wanted = units._parse(source), units._parse(unit)
+    one, zero = (registry.Quantity(Decimal(number), given).to(wanted).magnitude for number in (1, 0))
+    return one, zero

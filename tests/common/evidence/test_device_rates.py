@@ -7,11 +7,12 @@ import pytest
 
 from continuum_sph import cli as continuum
 from porescale.benchmarks import lbm
+from porescale.benchmarks.psm import bench_psm
 from porescale.cli.main import PACKAGE
 from porescale.common.cli import bench
 from porescale.common.compiled import cuda
 from porescale.common.core.errors import InputError
-from porescale.common.evidence.benchmarks import Benchmarks
+from porescale.common.evidence.benchmarks import PLAIN, Benchmarks
 from porescale.common.evidence.device_bandwidth import DeviceCopy
 
 
@@ -33,6 +34,16 @@ def test_the_rate_of_the_fluid_names_the_device(dtype, monkeypatch, capsys):
     assert row["device"] == cuda.SIMULATOR
     assert (row["name"], row["size"], row["dtype"], row["bytes"]) == ("lbm", 3, dtype, lbm.bytes_of(dtype))
     assert 0 < row["share_of_bandwidth"] <= 1
+
+
+def test_the_fluid_with_discs_is_timed_beside_the_fluid_alone(monkeypatch):
+    monkeypatch.setattr(lbm, "SMALLEST", 3)
+    works = bench_psm(6, 1, "float32", device="gpu")
+    assert [work.variant for work in works] == ["", PLAIN]
+    for work in works:
+        work.call()
+        assert (work.gpu, work.updates) == (True, 2 * 6**2)
+    assert not any(work.gpu for work in bench_psm(6, 1, "float32"))
 
 
 def test_on_the_cpu_a_row_says_so(monkeypatch, capsys):

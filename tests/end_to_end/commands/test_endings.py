@@ -268,4 +268,10 @@ def test_the_scene_that_new_writes_is_sound(ends, porescale, tmp_path, monkeypat
         assert ends("check", "mine", "--quality", level)[0] == 0
     assert load("mine").gate is not None
     assert ends("new", "mine")[0] == 2
+    code, (said,) = ends("new", "mine.toml")  # it would make a folder of that name
+    assert (code, said) == (
+        2,
+        "NAME = 'mine.toml': names a file; name the folder to make: mine; scene.toml will be in it",
+    )
+    assert not Path("mine.toml").exists()
     assert COLUMN  # the twin of soundness is every refusal above

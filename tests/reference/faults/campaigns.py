@@ -21,7 +21,7 @@ HEADER = ("campaign", "date", "commit", "seed", "tries", "how they ended", "foun
 def record(campaign: str, seed: int, ends: Mapping[str, int], found: int, docs: Path = DOCS) -> None:
     """Keep what a campaign came to, in place of what the same one (of this commit and seed) came to before."""
     file = docs / "campaigns.json"
-    rows = json.loads(file.read_text(encoding="utf-8"))["rows"] if file.exists() else []
+    rows = json.loads(file.read_text(encoding="utf-8")) if file.exists() else []
     row: dict[str, Any] = {"campaign": campaign, **mark(), "seed": seed}
     same = ("campaign", "commit", "seed")
     rows = [it for it in rows if any(it[key] != row[key] for key in same)]

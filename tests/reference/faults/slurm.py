@@ -20,11 +20,9 @@ from typing import Any
 
 import psutil
 
-from tests.reference.waiting import awaited
+from tests.reference.waiting import PATIENCE, awaited
 
 LOOK = 0.01
-PATIENCE = 60.0
-"""Seconds after which a test that waits for a job fails."""
 TOOLS = {
     "sbatch": """
         [ -e "$FAKE/refuse" ] && { cat "$FAKE/refuse" >&2; exit 1; }
@@ -124,7 +122,7 @@ class Slurm:
         job.again, job.end = again, "NODE_FAIL"
         job.kill()
 
-    def preempt(self, number: str, *, grace: float = 20.0) -> None:
+    def preempt(self, number: str, *, grace: float = PATIENCE) -> None:
         """Another job needs the machine: SIGTERM, SIGKILL where the run has not ended after a while; queued again."""
         job = self.jobs[number]
         job.again, job.end = True, "PREEMPTED"

@@ -59,12 +59,13 @@ export class Chart {
     }
   }
 
-  /** Show curves {x, y, dots}, and colour and label where given; y may hold nulls.  all : numbers that the axis must
-   *  hold besides. */
+  /** Show curves {x, y, dots}, and colour and label where given; y may hold nulls.  half : of a band about a curve;
+   *  thin : one of many.  all : numbers that the axis must hold besides. */
   set(curves, all = []) {
     this.curves = curves;
     const xs = curves.flatMap((it) => [it.x[0], it.x.at(-1)]).filter(Number.isFinite);
-    const ys = [...curves.flatMap((it) => it.y), ...all].filter((it) => Number.isFinite(it));
+    const ends = (it) => (it.half ? it.y.flatMap((y, k) => [y - it.half[k], y + it.half[k]]) : []);
+    const ys = [...curves.flatMap((it) => it.y), ...curves.flatMap(ends), ...all].filter((it) => Number.isFinite(it));
     const low = ys.reduce((a, b) => Math.min(a, b), Infinity);
     const high = ys.reduce((a, b) => Math.max(a, b), -Infinity);
     const flat = !(high - low > 1e-12 * Math.max(Math.abs(low), Math.abs(high)));
@@ -106,7 +107,8 @@ export class Chart {
     }
     const axis = { x: SIZE.width - SIZE.right, y: base + 16, "text-anchor": "end" };
     this.svg.append(drawn("text", axis, this.axis));
-    this.curves.forEach(({ x, y, dots = false, colour, label = "" }, k) => {
+    this.curves.forEach(({ x, y, dots = false, colour, label = "", half = null, thin = false }, k) => {
+      if (half) this.band({ x, y, half, colour, label });
       let path = "";
       let pen = "M";
       for (let i = 0; i < x.length; i++) {
@@ -119,10 +121,19 @@ export class Chart {
         pen = dots ? "M" : "L";
       }
       const dashes = k && !dots && !colour ? { "stroke-dasharray": "5 3" } : {};
-      this.svg.append(drawn("path", { d: path, class: dots ? "curve dots" : "curve", "data-label": label, style: `stroke: ${colour ?? STROKES[k % 4]}`, ...dashes }));
+      this.svg.append(drawn("path", { d: path, class: `curve${dots ? " dots" : ""}${thin ? " thin" : ""}`, "data-label": label, style: `stroke: ${colour ?? STROKES[k % 4]}`, ...dashes }));
     });
     this.cursor = drawn("line", { y1: SIZE.top, y2: base, class: "cursor", visibility: "hidden" });
     this.svg.append(this.cursor);
+  }
+
+  /** What lies within `half` of a curve, where both are numbers. */
+  band({ x, y, half, colour, label }) {
+    const there = [...x.keys()].filter((i) => Number.isFinite(y[i]) && Number.isFinite(half[i]));
+    if (!there.length) return;
+    const points = (sign) => there.map((i) => this.to(x[i], y[i] + sign * half[i]).map((it) => it.toFixed(1)).join(","));
+    const path = `M${[...points(1), ...points(-1).reverse()].join("L")}Z`;
+    this.svg.append(drawn("path", { d: path, class: "band", "data-label": label, style: `fill: ${colour}` }));
   }
 
   /** Put the cursor at a place, and say the values there. */
@@ -160,7 +171,7 @@ export class TableCharts {
     table.columns.slice(1).forEach(({ name, unit }, k) => {
       const chart = new Chart({ title: name, unit, axis: "t (s)", go });
       const found = tables.map((it) => [it, it.columns.findIndex((c) => c.name === name && c.unit === unit)]);
-      chart.set(found.filter(([, at]) => at >= 0).map(([it, at]) => ({ ...it, x: it.data[0], y: it.data[at] })));
+      chart.set(found.filter(([, at]) => at >= 0).map(([it, at]) => ({ ...it, x: it.data[0], y: it.data[at], half: it.half?.[at] })));
       this.add(chart, `${name} ${unit}`);
       chart.column = k + 1;
     });

@@ -23,6 +23,8 @@ from porescale.common.studies.schedulers.task import INTERRUPTED, Done, Task
 
 FIRST_LOOK, LAST_LOOK, SLOWER = 1.0, 30.0, 1.1
 """Seconds between looks at the queue: at first, in the end, and how much longer each is than the one before."""
+LINE_EVERY = 600.0
+"""Seconds after which how far all is is said again, though no run has begun or ended."""
 MOST = 1000
 """Jobs of one array; a cluster that does not say otherwise refuses more."""
 LOSSES = 3
@@ -44,7 +46,7 @@ class Call:
     waiting: dict[str, tuple[Task, Any]]
     lost: Counter[str] = field(default_factory=Counter)
     absent: Counter[str] = field(default_factory=Counter)
-    said: str = ""
+    said: tuple[str, float] = ("", 0.0)
 
     def submit(self) -> None:
         """Queue what has no job: all at once where none is queued, else as many as do not exceed ``jobs``."""
@@ -78,9 +80,10 @@ class Call:
             self._say(f"{running} run, {queued} are queued", f", {self.progress.words()}")
 
     def _say(self, text: str, more: str = "") -> None:
-        """A line, unless it is the last one again."""
-        if text != self.said:
-            self.said = text
+        """A line, unless it is the last one again and that was not long ago."""
+        last, at = self.said
+        if text != last or time.monotonic() - at > LINE_EVERY:
+            self.said = text, time.monotonic()
             self.progress.say(text + more)
 
     def _result(self, task: Task, job: Any) -> Done:
@@ -122,7 +125,11 @@ class Slurm:
 
     def run(self, tasks: Sequence[Task], jobs: int | None, progress: Progress) -> Iterator[Done]:
         """See `Scheduler`; as many at a time as Slurm gives where ``jobs`` is None."""
-        queue = Queue(tasks[0].folder.parent, self.asked)
+        folder = tasks[0].folder.parent
+        if "%" in str(folder.resolve()):
+            problem, repair = "has a % in its path, which Slurm reads as a number of a job", "name another --out"
+            raise InputError(Fault("folder", str(folder), problem, repair=repair))
+        queue = Queue(folder, self.asked)
         try:
             found = queue.found(queue.states())
         except OSError as error:

@@ -5,8 +5,19 @@ import { shown } from "./colours.js";
 import { again, ago, ask } from "./live.js";
 import { section, table } from "./panels.js";
 
-const fromServer = async (name) => JSON.parse(new TextDecoder().decode(await ask(name)));
-const pageOf = (name) => `run/${encodeURIComponent(name)}/`;
+/** Where the page of a served sweep has its data from: what each name says, the page of a point, its small picture. */
+const served = {
+  json: async (name) => JSON.parse(new TextDecoder().decode(await ask(name))),
+  page: (name) => `run/${encodeURIComponent(name)}/`,
+  picture: ({ name, state }) => `picture/${encodeURIComponent(name)}?step=${state.steps.at(-1)}`,
+};
+
+/** Where a page that is complete in itself has it from: all is in `data`. */
+export const held = (data) => ({
+  json: async (name) => data.json[name],
+  page: (name) => data.pages[name] ?? null,
+  picture: ({ name }) => data.pictures[name],
+});
 
 /** How a point stands, in words. */
 function stateOf({ state, problem }) {
@@ -16,14 +27,19 @@ function stateOf({ state, problem }) {
   return [outcome || "run", ...words, problem].filter(Boolean).join(" · ");
 }
 
+/** The colour of one of many. */
+const hue = (at, many) => `var(--curve, hsl(${Math.round(215 + (190 * at) / Math.max(1, many - 1))} 70% var(--curve-light)))`;
+
 export class Sweep {
-  constructor(element, title) {
-    Object.assign(this, { element, rows: [], series: new Map(), images: new Map(), by: null, down: false });
+  constructor(element, title, source = served) {
+    Object.assign(this, { element, source, ensembles: [], bands: new Map(), rows: [], series: new Map(), images: new Map(), by: null, down: false });
     this.line = make("p", { class: "live", role: "status" }, "reading the runs …");
     this.list = make("div", { class: "points" });
+    this.means = section("ensembles", "Ensembles");
+    this.means.hidden = true;
     this.curves = make("div");
     this.find = make("input", { type: "search", placeholder: "front, energy, force …", "aria-label": "columns to show", oninput: () => this.charts?.filter(this.find.value) });
-    element.replaceChildren(this.line, make("main", { class: "porescale-report sweep" }, make("h1", {}, title), section("points", "Points", this.list),
+    element.replaceChildren(this.line, make("main", { class: "porescale-report sweep" }, make("h1", {}, title), this.means, section("points", "Points", this.list),
       section("curves", "Over time", make("p", { class: "finder" }, "Columns ", this.find), this.curves)));
   }
 
@@ -34,15 +50,16 @@ export class Sweep {
 
   /** Look at the points again; their curves only where rows were added. */
   async look() {
-    const rows = await fromServer("points");
+    const rows = await this.source.json("points");
     let more = rows.length !== this.rows.length;
     for (const { name, state } of rows) {
       const size = state?.tables.series ?? 0;
       if (!size || this.series.get(name)?.size === size) continue;
-      this.series.set(name, { size, table: await fromServer(`${pageOf(name)}table/series`) });
+      this.series.set(name, { size, table: await this.source.json(`run/${encodeURIComponent(name)}/table/series`) });
       more = true;
     }
     this.rows = rows;
+    if (await this.lookAtEnsembles()) more = true;
     const count = (outcome) => rows.filter((it) => it.state?.outcome === outcome).length;
     const words = ["finished", "running", "unstable", "failed", "interrupted"].map((it) => [count(it), it]).filter(([it]) => it);
     this.say([`${rows.length} run${rows.length === 1 ? "" : "s"}`, ...words.map((it) => it.join(" "))].join(" · "), count("running") ? "running" : "finished");
@@ -51,6 +68,38 @@ export class Sweep {
     this.told = now;
     if (more) this.draw();
     return false;
+  }
+
+  /** Look at the ensembles again, at their bands where another member has finished; gives whether one has. */
+  async lookAtEnsembles() {
+    const found = await this.source.json("ensembles");
+    let more = false;
+    for (const { name, finished } of found) {
+      const key = finished.join(" ");
+      if (!finished.length || this.bands.get(name)?.key === key) continue;
+      this.bands.set(name, { key, table: await this.source.json(`band/${encodeURIComponent(name)}`) });
+      more = true;
+    }
+    if (JSON.stringify(found) !== JSON.stringify(this.ensembles)) this.tell(found);
+    this.ensembles = found;
+    return more;
+  }
+
+  /** The table of ensembles: means with their intervals. */
+  tell(ensembles) {
+    this.means.hidden = !ensembles.length;
+    const words = (it) => make("li", { style: `border-color: ${hue(ensembles.indexOf(it), ensembles.length)}` }, `${it.name}: ${it.said}`);
+    const head = ["combination", "quantity", "n", "mean", "± 95 %", "standard error", "one run ±", "expected", "verdict", "remark"];
+    const text = (value) => (value === null ? "" : typeof value === "number" ? shown(value) : String(value));
+    const rows = ensembles.flatMap(({ name, lines }) => lines.filter((it) => it.n).map((it) => {
+      const band = it.tolerance === null ? "" : `${shown(it.value)} ± ${shown(it.tolerance)}`;
+      const half = it["t high"] === null ? null : it["t high"] - it.mean;
+      const cells = [it.unit ? `${it.quantity} (${it.unit})` : it.quantity, it.n, it.mean, half, it["standard error"], it["standard deviation"], band, it.verdict, it.remark];
+      return make("tr", {}, make("th", { scope: "row" }, name), ...cells.map((cell) => make("td", {}, text(cell))));
+    }));
+    const note = "Over time: members thin, means of those that finished with Student's interval at 95 %.";
+    const parts = rows.length ? [table(head, rows, "ensembles")] : [];
+    this.means.replaceChildren(this.means.firstElementChild, make("ul", { class: "ensembles" }, ...ensembles.map(words)), ...parts, make("p", {}, note));
   }
 
   /** Columns that any of the points has, of what they set those in which they differ: [title, group, key]. */
@@ -76,9 +125,11 @@ export class Sweep {
     return known.map(([row]) => row);
   }
 
+  /** The colour of a point, that of its ensemble where it is in one. */
   colour(name) {
-    const at = this.rows.findIndex((it) => it.name === name) / Math.max(1, this.rows.length - 1);
-    return `var(--curve, hsl(${Math.round(215 + 190 * at)} 70% var(--curve-light)))`;
+    const of = this.ensembles.findIndex((it) => it.members.includes(name));
+    if (of >= 0) return hue(of, this.ensembles.length);
+    return hue(this.rows.findIndex((it) => it.name === name), this.rows.length);
   }
 
   /** A small picture, asked for once. */
@@ -102,8 +153,8 @@ export class Sweep {
     });
     const rows = this.sorted().map((row) => {
       const { name, state } = row;
-      const image = row.picture ? this.image(`picture/${encodeURIComponent(name)}?step=${state.steps.at(-1)}`) : "";
-      const link = make("a", { href: pageOf(name) }, image, make("span", { style: `border-color: ${this.colour(name)}` }, name));
+      const image = row.picture ? this.image(this.source.picture(row)) : "";
+      const link = make("a", { href: this.source.page(name) }, image, make("span", { style: `border-color: ${this.colour(name)}` }, name));
       const said = make("td", { class: "state", "data-state": state?.outcome ?? "failed" }, stateOf(row),
         state?.end && state.outcome === "running" ? make("progress", { max: state.end, value: state.time ?? 0, "aria-label": `progress of ${name}` }) : "");
       const made = make("tr", {}, make("th", { scope: "row" }, link), said, ...columns.slice(2).map((column) => {
@@ -125,7 +176,10 @@ export class Sweep {
   draw() {
     const there = this.rows.map((it) => it.name).filter((name) => this.series.get(name)?.table.data[0]?.length);
     if (!there.length) return;
-    this.charts = new TableCharts(there.map((name) => ({ ...this.series.get(name).table, colour: this.colour(name), label: name })), null);
+    const members = new Set(this.ensembles.flatMap((it) => it.members));
+    const curves = there.map((name) => ({ ...this.series.get(name).table, colour: this.colour(name), label: name, thin: members.has(name) }));
+    const means = this.ensembles.map(({ name }, k) => ({ ...this.bands.get(name)?.table, colour: hue(k, this.ensembles.length), label: name })).filter((it) => it.data);
+    this.charts = new TableCharts([...curves, ...means], null);
     this.curves.replaceChildren(this.charts.element);
     this.charts.filter(this.find.value);
   }
@@ -138,8 +192,12 @@ export class Sweep {
   }
 }
 
-export async function openSweep(element, title) {
-  const sweep = new Sweep(element, title);
+export async function openSweep(element, title, source = null) {
+  const sweep = new Sweep(element, title, source ?? served);
   window.sweep = sweep;
+  if (source) {
+    await sweep.look();
+    return;
+  }
   await again(() => sweep.look(), (text, state) => sweep.say(text, state));
 }

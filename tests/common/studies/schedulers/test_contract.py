@@ -20,10 +20,10 @@ from porescale.common.studies.schedulers.local import Local
 from porescale.common.studies.schedulers.progress import of
 from porescale.common.studies.schedulers.slurm_options import parameters
 from porescale.common.studies.schedulers.task import INTERRUPTED, Process, Task
-from tests.reference.faults.slurm import PATIENCE, slurm
+from tests.reference.faults.slurm import slurm
 from tests.reference.same_run import differences
 from tests.reference.toy_command import SCENE, begun, call, run_alone
-from tests.reference.waiting import running, until
+from tests.reference.waiting import PATIENCE, running, until
 
 
 @contextmanager

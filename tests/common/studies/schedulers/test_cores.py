@@ -24,6 +24,7 @@ def machine(tmp_path, monkeypatch):
         monkeypatch.setattr(os, "sched_getaffinity", lambda process: set(range(count)), raising=False)
 
     monkeypatch.setattr(cores.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(cores, "busy", lambda: 0.4)
     return of
 
 
@@ -54,6 +55,14 @@ def test_one_run_and_too_many_runs_are_left_to_the_system(machine):
     for jobs, threads in ((1, 2), (5, 1), (2, 3)):
         with cores.taken(jobs, threads) as given:
             assert given == [[]] * jobs
+
+
+def test_beside_other_work_all_is_left_to_the_system(machine, monkeypatch):
+    machine(4)
+    for load, expected in ((2.2, [[0], [1]]), (2.6, [[], []])):
+        monkeypatch.setattr(cores, "busy", lambda load=load: load)
+        with cores.taken(2, 1) as given:
+            assert given == expected
 
 
 def test_where_the_system_places_nothing_nothing_is_done(monkeypatch):

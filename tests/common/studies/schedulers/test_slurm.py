@@ -14,10 +14,11 @@ import pytest
 from porescale.common.core.atomic import owned
 from porescale.common.studies.schedulers import slurm as scheduler
 from porescale.common.studies.schedulers import slurm_job
-from tests.reference.faults.slurm import PATIENCE, Slurm, ended, slurm
+from porescale.common.watch.sweep import Points
+from tests.reference.faults.slurm import Slurm, ended, slurm
 from tests.reference.same_run import differences
-from tests.reference.toy_command import CLOCK, SCENE, begun, call, run_alone
-from tests.reference.waiting import done, kill, running, until
+from tests.reference.toy_command import CLOCK, SCENE, begun, call, run_alone, stepping
+from tests.reference.waiting import PATIENCE, done, kill, running, until
 
 OUT = Path("out")
 
@@ -85,6 +86,7 @@ def test_an_array_runs_the_points_and_no_more_than_jobs_at_a_time(cluster, sweep
     assert "--requeue" in script
     assert "(3 of 3, about 0 s left)" in said[-1]
     assert differences(OUT / "beads=3", untouched(3, Path("alone"))) == []
+    assert [row["state"]["outcome"] for row in Points(OUT, stepping()).rows()] == ["finished"] * 3  # as `watch` sees it
     code, said = sweep("3,4,5")
     assert code == 0
     assert said[0] == "3 of 3 points are there already"
@@ -121,6 +123,7 @@ def test_a_preempted_job_saves_its_state_and_is_queued_again(cluster, sweep):
     assert differences(OUT / "beads=3", untouched(3, Path("alone"))) == []
 
 
+@pytest.mark.slow
 def test_a_lost_job_is_queued_again_and_given_up_after_three(cluster, sweep):
     cluster.once(under_way("beads=3"), lambda: cluster.lose("100"))
     cluster.once(lambda: "101" in cluster.jobs, go)
@@ -175,6 +178,7 @@ def test_a_killed_command_called_again_finds_its_jobs(cluster, sweep):
     assert differences(OUT / "beads=3", untouched(3, Path("alone"))) == []
 
 
+@pytest.mark.slow
 def test_a_command_killed_before_it_knew_its_jobs_leaves_none_behind(cluster, sweep):
     cluster.held = True
     (cluster.folder / "dies").touch()
@@ -189,6 +193,7 @@ def test_a_command_killed_before_it_knew_its_jobs_leaves_none_behind(cluster, sw
     assert len(begun(OUT)) == 2
 
 
+@pytest.mark.slow
 def test_ctrl_c_leaves_the_jobs_and_says_how_to_go_on_or_end_them(cluster):
     with running(command(), stderr=subprocess.PIPE, text=True) as process:
         assert until(process, under_way("beads=4"), PATIENCE)
@@ -202,6 +207,7 @@ def test_ctrl_c_leaves_the_jobs_and_says_how_to_go_on_or_end_them(cluster):
     ended(cluster)
 
 
+@pytest.mark.slow
 def test_queued_points_with_other_settings_are_refused(cluster, sweep):
     cluster.held = True
     with running(command(), stderr=subprocess.DEVNULL) as process:
@@ -228,6 +234,7 @@ def test_a_full_disk_of_one_point_is_its_verdict_and_the_others_go_on(cluster, s
         assert "No space left on device" in next(csv.DictReader(file))["problem"]
 
 
+@pytest.mark.slow
 def test_clocks_hours_apart_change_nothing(cluster, sweep, monkeypatch):
     monkeypatch.setenv(CLOCK, "-20000")
     cluster.once(under_way("beads=3"), lambda: (apart(), cluster.kill("100_0"), go()))
@@ -254,6 +261,7 @@ def test_a_second_command_on_the_folder_is_refused(cluster, sweep):
     assert not cluster.jobs
 
 
+@pytest.mark.slow
 def test_a_silent_controller_is_waited_for_but_not_at_the_start(cluster, sweep):
     deaf = cluster.folder / "deaf"
     deaf.touch()
@@ -265,6 +273,14 @@ def test_a_silent_controller_is_waited_for_but_not_at_the_start(cluster, sweep):
     cluster.once(under_way("beads=4"), lambda: (go(), deaf.unlink()))
     code, said = sweep()
     assert code == 0, said
+
+
+def test_a_folder_that_slurm_reads_as_a_pattern_is_refused(cluster, capsys):
+    assert call(["sweep", "scene.toml", "--vary", "toy.beads=3", "--out", "50%j", "--scheduler", "slurm"]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert "has a % in its path" in said[0]
+    assert not cluster.jobs
 
 
 def test_what_sbatch_refuses_is_one_line(cluster, sweep):

@@ -1,0 +1,226 @@
+"""Bodies in a fluid on a device, in numba's simulator, beside the CPU's: the same bits.
+
+The simulator rounds after every operation, as the CPU's code does without fused products, and every sum over cells or
+bodies has the CPU's order: the bound on the difference is zero.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from porescale.coupling.coverage.polygon import Polygons
+from porescale.coupling.coverage.rectangle import Rectangle
+from porescale.coupling.device import bodies as device_bodies
+from porescale.coupling.device.bodies import grouped
+from porescale.coupling.device.cells import DeviceSaturatedCells
+from porescale.coupling.device.tiles import list_tiles, tiles_of
+from porescale.coupling.psm import SaturatedCells
+from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.coupling.weighting.choose import fitting_weights
+from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.device.fluid import DeviceFluid
+from porescale.lbm.fluid import Fluid
+
+NX, NY = 38, 14
+WALLS = Sides(left="wall", right="wall", bottom="wall", top="slip")
+PLACES = np.array([[9.2, 6.1], [13.9, 7.3], [37.3, 13.2]])  # two that overlap, one across the corner of a periodic box
+VELOCITY = np.array([[0.02, 0.01], [-0.03, 0.02], [0.01, 0.04]])
+SPIN = np.array([0.01, -0.02, 0.003])
+
+
+def started(*, device, dtype=np.float64, sides=None, force=(2e-4, -1e-4), polygons=None, **options):
+    """A random flow of 38 by 14 cells, two tiles along each axis, and three discs in it."""
+    fluid = (DeviceFluid if device else Fluid)(NX, NY, 0.7, force=force, dtype=dtype, sides=sides)
+    random = np.random.default_rng(1)
+    fluid.set_flow(*(0.05 * random.uniform(-1, 1, (2, NY, NX))), 1 + 0.01 * random.uniform(-1, 1, (NY, NX)))
+    kind = DeviceSaturatedCells if device else SaturatedCells
+    return fluid, kind(fluid, [3.3, 3.1, 2.2], polygons=polygons, **options)
+
+
+def gone(fluid, cells, steps=2, *, moving=True, turn=None):
+    """Loads of each step and the populations after them."""
+    found, places, velocity, spin = [], PLACES.copy(), VELOCITY.copy(), SPIN.copy()
+    for k in range(steps):
+        cells.advance(fluid, places, velocity, spin)
+        found += [cells._load.copy(), cells._entrained.copy(), cells.push.copy(), cells._shift.copy()]
+        if moving:
+            places, velocity, spin = places + 10 * velocity, velocity + 0.01 * cells.force, spin + 0.01 * cells.torque
+        if turn:
+            turn(k)
+    return [*found, fluid.state()["populations"].copy()]
+
+
+def same(found, expected):
+    """Whether two lists of arrays are the same to the bit."""
+    return all(np.array_equal(one, other) for one, other in zip(found, expected, strict=True))
+
+
+def both_same(**options):
+    """Whether device and CPU give the same bits, and whether there was anything to compare."""
+    expected = gone(*started(device=False, **options))
+    assert np.abs(expected[0]).min() > 0
+    return same(gone(*started(device=True, **options)), expected)
+
+
+@pytest.mark.parametrize("sides", [Sides(), WALLS], ids=["periodic", "walls"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_exact_walls_give_the_cpus_bits(dtype, sides):
+    assert both_same(dtype=dtype, sides=sides)
+
+
+@pytest.mark.parametrize(
+    ("solid", "weight"),
+    [(solid, weight) for solid in SOLID_OPERATORS if solid != "exact-wall" for weight in fitting_weights(solid)],
+)
+def test_every_operator_and_weight_is_the_cpus(solid, weight):
+    assert both_same(solid_operator=solid, weighting=weight)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_soft_rims_give_the_cpus_bits(dtype):
+    """With slips from the start, so that every rim is soft in the first step."""
+    found = []
+    for device in (False, True):
+        fluid, cells = started(device=device, dtype=dtype, soft_rim=True)
+        cells.soft_rim.slip[:] = [0.03, 0.01, 0.0]
+        found.append([*gone(fluid, cells), cells.soft_rim.slip])
+    assert same(*found)
+    assert 0.01 < found[0][-1][0] != 0.03
+
+
+def test_another_weight_gives_other_bits():
+    """The check that must fail."""
+    expected = gone(*started(device=False, solid_operator="SC2", weighting="B1"))
+    assert not same(gone(*started(device=True, solid_operator="SC2", weighting="B2")), expected)
+
+
+def test_discs_that_stand_are_sent_once(monkeypatch):
+    fluid, cells = started(device=True)
+    covered = []
+    monkeypatch.setattr(device_bodies.DeviceBodies, "_cover", _counted(device_bodies.DeviceBodies._cover, covered))
+    found = gone(fluid, cells, moving=False)
+    assert len(covered) == 1
+    assert same(found, gone(*started(device=False), moving=False))
+
+
+def _counted(function, calls):
+    def counted(*arguments):
+        calls.append(arguments)
+        return function(*arguments)
+
+    return counted
+
+
+def test_members_of_a_clump_that_overlap_hold_their_union():
+    """Three discs in a row, of which the middle one overlaps both: pairs have an order."""
+    found = []
+    for device in (False, True):
+        fluid, cells = started(device=device)
+        cells.pairs = np.array([[0, 1]])
+        found.append(gone(fluid, cells, 1))
+    assert same(*found)
+    assert not same(found[1], gone(*started(device=True), 1))
+
+
+def test_pairs_that_share_a_disc_are_of_one_group():
+    pairs = np.array([[0, 1], [3, 4], [1, 2], [3, 5], [6, 7]])
+    order, begin = grouped(pairs, 8)
+    groups = [order[a:b].tolist() for a, b in pairwise(begin)]
+    assert groups == [[[0, 1], [1, 2]], [[3, 4], [3, 5]], [[6, 7]]]
+
+
+def test_polygons_are_sent_as_the_cpu_fills_them():
+    found = []
+    for device in (False, True):
+        polygons = Polygons([[[-2.5, -2.0], [2.5, -2.0], [0.0, 3.0]]])
+        fluid, cells = started(device=device, polygons=polygons)
+        polygons.centre[:], polygons.velocity[:], polygons.spin[:] = [24.3, 7.2], [0.01, 0.02], 0.01
+
+        def turn(_, polygons=polygons):
+            polygons.angle += 0.3
+            polygons.centre += 0.4
+
+        found.append(gone(fluid, cells, turn=turn))
+    assert same(*found)
+
+
+def test_rectangles_and_rings_are_refused():
+    with pytest.raises(ValueError, match="no rectangles and no rings"):
+        DeviceSaturatedCells(DeviceFluid(NX, NY, 0.7), [], rectangles=[Rectangle((3.0, 3.0), (6.0, 6.0))])
+
+
+def test_what_is_read_between_steps_is_that_of_the_cpu_and_changes_nothing():
+    expected, found = started(device=False), started(device=True)
+    motion = PLACES + 0.3, VELOCITY, SPIN
+    for fluid, cells in (expected, found):
+        gone(fluid, cells, 1)
+        cells.cover(*motion)
+    assert same(found[1].flow(found[0], *motion), expected[1].flow(expected[0], *motion))
+    assert same([found[1].solid, found[1].weights()], [expected[1].solid, expected[1].weights()])
+    assert same(gone(*found, 1), gone(*started_and_gone(), 1))
+
+
+def started_and_gone():
+    """The CPU's, one step on, without a look."""
+    fluid, cells = started(device=False)
+    gone(fluid, cells, 1)
+    return fluid, cells
+
+
+class Backwards:
+    """numpy, as the simulator takes it, that counts the blocks of a kernel from the last to the first."""
+
+    def __init__(self):
+        self.most = 0
+
+    def __getattr__(self, name):
+        return getattr(np, name)
+
+    def ndindex(self, *shape):
+        blocks = list(np.ndindex(*shape))
+        self.most = max(self.most, len(blocks))
+        return reversed(blocks)
+
+
+def test_no_order_of_threads_and_of_kernels_matters(monkeypatch):
+    """Blocks from the last to the first, and cells without bodies before those near them."""
+    expected, backwards = gone(*started(device=False)), Backwards()
+    monkeypatch.setattr("numba.cuda.simulator.kernel.np", backwards)
+    sweep = device_bodies.DeviceBodies._sweep_part
+    waiting = []
+
+    def plain_first(self, part, *more):
+        if part[0] == 0:
+            waiting.append(part)
+            sweep(self, (part[1], self._tiles - part[1]), *more)
+            sweep(self, part, *more)
+
+    monkeypatch.setattr(device_bodies.DeviceBodies, "_sweep_part", plain_first)
+    assert same(gone(*started(device=True)), expected)
+    assert len(waiting) == 2
+    assert backwards.most > 4
+
+
+def test_every_cell_finds_the_bodies_that_reach_into_it():
+    """Beside a search over all cells and images."""
+    fluid, cells = started(device=True)
+    cells.advance(fluid, PLACES, VELOCITY, SPIN)
+    patches, box = cells._patches, (NX, NY, True, True)
+    wide, high = tiles_of(NX, NY)
+    start, order, body = np.zeros(wide * high + 1, int), np.zeros(wide * high, int), np.zeros(99, int)
+    covered = list_tiles(patches, box, start, order, body, np.zeros(wide * high, int))
+    expected = []
+    for t in range(wide * high):
+        x, y = t % wide * 32, t // wide * 8
+        inside = {(a, b) for a in range(x, min(x + 32, NX)) for b in range(y, min(y + 8, NY))}
+        expected.append([n for n in range(3) if inside & _cells_of(patches, n)])
+    assert [body[a:b].tolist() for a, b in pairwise(start)] == expected
+    assert sorted(order.tolist()) == list(range(wide * high))
+    assert all(expected[t] for t in order[:covered])
+
+
+def _cells_of(patches, n):
+    """Cells of a patch in a periodic box."""
+    x, y = patches.corner[n]
+    return {((x + a) % NX, (y + b) % NY) for a in range(int(patches.stride[n])) for b in range(int(patches.height[n]))}
