@@ -53,6 +53,8 @@ class Growing:
         self._seen: tuple[Any, list[int], dict[str, int]] = (None, [], {})
         self._files: dict[Path, tuple[tuple[int, int, int], list[vtkhdf.Frame]]] = {}
         self._run: Run | None = None
+        self._last: tuple[float, float] | None = None
+        """When something was last written by the clock of who wrote it, and by our own."""
 
     def state(self) -> dict[str, Any]:
         """What changes while a run writes.
@@ -80,7 +82,7 @@ class Growing:
             "problem": run.card.get("problem") or "",
             "time": reached,
             "end": end if isinstance(end, int | float) else None,
-            "age": max(0.0, clock.time() - self._changed()),
+            "age": self._age(),
         }
 
     def run(self) -> Run:
@@ -129,6 +131,19 @@ class Growing:
         return {
             name: found[name].stat().st_size for name in sorted(found, key=lambda name: (name != SERIES[:-4], name))
         }
+
+    def _age(self) -> float:
+        """Seconds since something was last written.
+
+        By our clock since a change was seen; only before that, what lies between our clock and that of the writer's
+        machine counts, too.
+        """
+        changed, now = self._changed(), clock.monotonic()
+        if self._last is None:
+            self._last = changed, now - max(0.0, clock.time() - changed)
+        elif changed != self._last[0]:
+            self._last = changed, now
+        return now - self._last[1]
 
     def _changed(self) -> float:
         """When something was last written, seconds of the clock."""

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import time
 
 import h5py
 import numpy as np
@@ -82,6 +83,18 @@ def test_a_killed_run_says_how_long_nothing_was_written(tmp_path):
     for path in tmp_path.rglob("*"):
         os.utime(path, (1e9, 1e9))
     assert Growing(tmp_path, PROGRAM).state()["age"] > 1e6
+
+
+def test_a_writer_whose_clock_is_hours_behind_is_seen_to_write(tmp_path):
+    toy_run(tmp_path)
+    behind = time.time() - 2e4
+    growing, ages = Growing(tmp_path, PROGRAM), []
+    for later in (0, 0, 1):
+        for path in tmp_path.rglob("*"):
+            os.utime(path, (behind + later, behind + later))
+        ages.append(growing.state()["age"])
+    assert min(ages[:2]) > 1e4  # nothing has changed yet: the check that must fail
+    assert ages[2] < 1e3
 
 
 @pytest.mark.parametrize("name", ["card.json", "fields.vtkhdf", "parts/000000000010"])
