@@ -155,13 +155,15 @@ class Wanted:
         """The part of the box; InputError unless it is one."""
         assert self.view is not None
         if len(self.view) != 4:
-            raise InputError(Fault("view", str(self.view), "must be left, right, bottom, top", "m"))
+            given = ", ".join(map(str, self.view))
+            raise InputError(Fault("view", given, "must be left, right, bottom, top", "m"))
         left, right, bottom, top = (_number("view", it, Quantity("m", help="sides of the view")) for it in self.view)
         edges = look.view or next((grid.extent for grid in run.snapshot(-1).grids.values()), None)
         allowed = f"x {edges[0]:g} to {edges[1]:g}, y {edges[2]:g} to {edges[3]:g}" if edges else ""
         given = f"{left:g}, {right:g}, {bottom:g}, {top:g}"
         if not (left < right and bottom < top):
-            raise InputError(Fault("view", given, "must be left, right, bottom, top", "m", allowed, "order them"))
+            repair = "give sides with something between them" if left == right or bottom == top else "order them"
+            raise InputError(Fault("view", given, "must be left, right, bottom, top", "m", allowed, repair))
         if edges:
             slack = 1e-9 * max(abs(it) for it in edges)
             if not (edges[0] - slack <= left and right <= edges[1] + slack
@@ -239,11 +241,12 @@ def _unit(look: Look, run: Run) -> str:
 def _limits(key: str, pair: Pair, unit: str) -> tuple[float, float]:
     """Two numbers, the lower first."""
     if len(pair) != 2:
-        raise InputError(Fault(key, str(pair), "must be two numbers, low and high", unit))
+        raise InputError(Fault(key, ", ".join(map(str, pair)), "must be two numbers, low and high", unit))
     own = Quantity("" if unit == "1" else unit, help="range of the colours")
     low, high = _number(key, pair[0], own), _number(key, pair[1], own)
     if not low < high:
-        raise InputError(Fault(key, f"{low:g}, {high:g}", "must be low and high", unit, repair="exchange them"))
+        repair = "give two that differ" if low == high else "exchange them"
+        raise InputError(Fault(key, f"{low:g}, {high:g}", "must be low and high", unit, repair=repair))
     return low, high
 
 

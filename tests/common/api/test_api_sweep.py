@@ -101,6 +101,24 @@ def test_a_scene_as_an_object_gives_the_same_and_goes_on_where_it_was(scene, ran
         porescale.sweep(loaded.with_({"time.end": 0.02}), VARY, tmp_path / "object")
 
 
+def test_repeats_give_members_and_what_their_mean_is_worth(scene, ran, tmp_path):
+    table = porescale.sweep(scene, None, tmp_path / "out", over="contact.friction=0.2,0.3,0.4")
+    assert table["front (m)"].tolist() == pytest.approx([0.4, 0.6, 0.8])
+    (line,) = table.attrs["ensembles"]
+    assert (line["asked"], line["n"], line["over"]) == (3, 3, "contact.friction")
+    assert line["mean"] == pytest.approx(0.6)
+    assert line["t high"] - line["mean"] == pytest.approx(4.3027 * 0.2 / math.sqrt(3.0), rel=1e-4)
+    with open(tmp_path / "out" / "ensemble.csv") as file:
+        assert float(next(csv.DictReader(file))["mean"]) == line["mean"]
+    each = porescale.sweep(scene, {"contact.stiffness": [1e5, 2e5]}, tmp_path / "two", over="contact.friction=0.2,0.3")
+    assert len(each) == 4
+    assert [it["name"] for it in each.attrs["ensembles"]] == ["stiffness=100000.0", "stiffness=200000.0"]
+    with pytest.raises(
+        InputError, match=r"^repeat = 3: repeats the same run: .*; name a key .* over section.key=a,b,c"
+    ):
+        porescale.sweep(scene, repeat=3)  # a single grain where it is given: nothing is drawn
+
+
 def test_what_expected_toml_beside_the_scene_asks_for_is_compared(scene, ran, tmp_path):
     text = '[[expected]]\nname = "how far"\ncolumn = "front (m)"\nat = 0.005\nunit = "m"\nvalue = 0\ntolerance = 1\n'
     (scene.parent / "expected.toml").write_text(text)

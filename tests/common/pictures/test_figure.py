@@ -72,7 +72,10 @@ def test_every_format_is_written_whole(jet, tmp_path, kind):
     [
         ({"field": "presure"}, "pressure"),
         ({"colour": "spun"}, "spin"),
-        ({"limits": (2.0, 1.0)}, "low and high"),
+        ({"limits": (2.0, 1.0)}, "low and high; exchange them"),
+        ({"limits": (1.0, 1.0)}, "low and high; give two that differ"),
+        ({"limits": (1.0,)}, "limits = '1.0': must be two numbers"),
+        ({"view": (0.01, 0.01, 0.0, 0.01)}, "give sides with something between them"),
         ({"limits": ("0 s", "1 s")}, "limits"),
         ({"view": (0.0, 1.0, 0.0, 0.01)}, "out of the box"),
         ({"view": (0.02, 0.01, 0.0, 0.01)}, "left, right, bottom, top"),

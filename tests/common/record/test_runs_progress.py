@@ -102,6 +102,25 @@ def test_time_left_counts_from_the_first_step_not_from_the_compiling(monkeypatch
     assert watch.left() == pytest.approx(4.9)
 
 
+@pytest.mark.parametrize(("share", "stopped"), [(0.0, 5.0), (0.5, 0.0)])  # the second is the twin: a busy machine
+def test_a_wait_that_lasts_too_long_without_the_processor_is_one_in_which_the_process_was_stopped(
+    monkeypatch, share, stopped
+):
+    now, busy = [0.0], [0.0]
+    monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(progress.clock, "process_time", lambda: busy[0])
+    watch = Watch("dam", 0.0, 2.0, quiet=True)
+
+    def wait(seconds):
+        now[0] += seconds + 5.0
+        busy[0] += share * 5.0
+        return False
+
+    monkeypatch.setattr(watch._stop, "wait", wait)
+    assert not watch._wait(0.25)
+    assert watch.stopped == stopped
+
+
 def test_a_last_step_beyond_the_end_is_no_more_than_all():
     watch = Watch("dam", 0.0, 0.4, quiet=True)
     watch.update(20, 0.3)

@@ -19,6 +19,7 @@ from porescale.common.studies.ensemble_picture import band
 from porescale.common.studies.parameter_table import Point, read_points, varied
 from porescale.common.studies.runner import Campaign, Ended
 from porescale.common.studies.schedulers.local import Local
+from porescale.common.studies.schedulers.task import Process
 from porescale.common.studies.sweep import run_points
 from tests.reference.toy_package import TOY
 
@@ -180,6 +181,26 @@ def test_two_runs_have_a_mean_and_no_interval_and_it_is_said(scene):
     assert line["standard error"]
     assert (line["t low"], line["bootstrap low"], line["verdict"]) == ("", "", OPEN)
     assert line["remark"].startswith("no interval of 2, at least 3 are needed")
+
+
+def test_the_command_ends_with_one_where_a_row_fails_for_the_scene_as_it_is(toy, scene, monkeypatch):
+    monkeypatch.setattr(Process, "run", lambda self: Machine()(self.task.command()))
+    row = '[[expected]]\nname = "left"\ncolumn = "left (m)"\nat = "end"\nunit = "m"\nvalue = {}\ntolerance = 0.05\n'
+    expected = scene.parent / "expected.toml"
+    expected.write_text(row.format(0.06))
+    code, out, _ = toy("sweep", "scene.toml", "--repeat", "4")
+    assert code == 0
+    assert "as-it-is: 4 of 4 finished\npass: left (m) 0.0" in out
+    assert "ensemble.csv" in out
+    expected.write_text(row.format(0.5))
+    code, out, _ = toy("sweep", "scene.toml", "--repeat", "4")
+    assert code == 1
+    assert "fail: left (m)" in out
+    code, out, _ = toy("sweep", "scene.toml", "--vary", "decay.rate=1,2", "--repeat", "3", "--out", "varied")
+    assert code == 0  # shown, and not meant for other values
+    assert "fail: rate=2, left (m)" in out
+    assert toy("sweep", "scene.toml", "--vary", "decay.rate=1,2", "--out", "plain")[0] == 0
+    assert not (scene.parent / "plain" / "ensemble.csv").exists()  # without repeats nothing is there
 
 
 @pytest.mark.parametrize(

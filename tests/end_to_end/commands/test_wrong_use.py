@@ -67,6 +67,8 @@ WRONG: dict[tuple[str, ...], str] = {
     ("porescale", "sweep", "good.toml", "latin.csv"): "latin.csv: line 2: is not UTF-8 text; save it as UTF-8",
     ("porescale", "sweep", "good.toml", "."): "cannot be read",
     ("porescale", "sweep", "good.toml"): "varies nothing",
+    ("continuum", "sweep", "soil.toml", "--repeat", "3"): "repeats the same run: the scene draws nothing at random",
+    ("porescale", "sweep", "good.toml", "--repeat", "0"): "(allowed: 1 to 10000)",
     ("porescale", "sweep", "good.toml", "--vary", "time.end"): "write it as --vary contact.friction=0.2,0.5",
     # folders that are no runs
     ("porescale", "show", "nowhere"): "no run here (card.json is missing)",

@@ -89,14 +89,14 @@ export class Sweep {
   tell(ensembles) {
     this.means.hidden = !ensembles.length;
     const words = (it) => make("li", { style: `border-color: ${hue(ensembles.indexOf(it), ensembles.length)}` }, `${it.name}: ${it.said}`);
-    const head = ["combination", "quantity", "n", "mean", "± 95 %", "standard error", "one run ±", "expected", "verdict", "remark"];
     const text = (value) => (value === null ? "" : typeof value === "number" ? shown(value) : String(value));
-    const rows = ensembles.flatMap(({ name, lines }) => lines.filter((it) => it.n).map((it) => {
-      const band = it.tolerance === null ? "" : `${shown(it.value)} ± ${shown(it.tolerance)}`;
-      const half = it["t high"] === null ? null : it["t high"] - it.mean;
-      const cells = [it.unit ? `${it.quantity} (${it.unit})` : it.quantity, it.n, it.mean, half, it["standard error"], it["standard deviation"], band, it.verdict, it.remark];
-      return make("tr", {}, make("th", { scope: "row" }, name), ...cells.map((cell) => make("td", {}, text(cell))));
-    }));
+    const known = ensembles.flatMap(({ name, lines }) => lines.filter((it) => it.n).map((it) => ({
+      combination: name, quantity: it.unit ? `${it.quantity} (${it.unit})` : it.quantity, n: it.n, mean: it.mean,
+      "± 95 %": it["t high"] === null ? null : it["t high"] - it.mean, "standard error": it["standard error"], "one run ±": it["standard deviation"],
+      expected: it.tolerance === null ? "" : `${shown(it.value)} ± ${shown(it.tolerance)}`, verdict: it.verdict, remark: it.remark,
+    })));
+    const head = Object.keys(known[0] ?? {}).filter((key) => known.some((it) => text(it[key])) && (key !== "combination" || ensembles.length > 1));
+    const rows = known.map((it) => make("tr", {}, ...head.map((key) => make("td", {}, text(it[key])))));
     const note = "Over time: members thin, means of those that finished with Student's interval at 95 %.";
     const parts = rows.length ? [table(head, rows, "ensembles")] : [];
     this.means.replaceChildren(this.means.firstElementChild, make("ul", { class: "ensembles" }, ...ensembles.map(words)), ...parts, make("p", {}, note));
