@@ -160,9 +160,10 @@ def test_memory_that_does_not_suffice_fails_the_build(fits, monkeypatch):
     assert len(str(refused.value).splitlines()) == 1
 
 
-def test_a_run_that_was_built_asks_for_no_more_memory(monkeypatch):
+@pytest.mark.parametrize("scene", [ON_GPU, GRAINS_ON_GPU], ids=["fluid", "grains"])
+def test_a_run_that_was_built_asks_for_no_more_memory(scene, monkeypatch):
     """The check that must fail for an array that is made at the first step, row, snapshot or state."""
-    simulation = build(Scene(**ON_GPU))
+    simulation = build(Scene(**scene))
     monkeypatch.setattr(cuda.cuda(), "to_device", lambda _: pytest.fail("asked for more memory"))
     state = simulation.state()
     simulation.check()
