@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from porescale.common.compiled.turns import TURNS
 from porescale.common.core.atomic import clean, folder_in_use, owned
 from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.record import card as cards
@@ -153,11 +154,12 @@ class _Run:
 
 def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], object] | None) -> Outcome:
     """The loop, and how it may end."""
-    model, began = run.model, clock.perf_counter()
+    model, began, compiled = run.model, clock.perf_counter(), TURNS.seconds
     try:
         with polite_stop() as stop:
             spent = _loop(run, record, stop, watch)
         stepped = clock.perf_counter()
+        recording = stepped - began - spent.seconds - (TURNS.seconds - compiled - spent.compiling)
         watch.enter("joining snapshots")
         record.close(model, cards.RUNNING)
         if after is not None:
@@ -182,7 +184,7 @@ def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], ob
                 error.add_note(record.last_good())
         raise
     seconds, count = record.seconds(), record.snapshots
-    recording, finishing = stepped - began - spent.seconds, clock.perf_counter() - stepped
+    finishing = clock.perf_counter() - stepped
     return Outcome(
         record.folder, cards.FINISHED, model.step, model.time, seconds, count, spent.speed(), recording, finishing
     )
@@ -190,11 +192,15 @@ def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], ob
 
 @dataclass
 class _Spent:
-    """Steps and wall-clock seconds of this session, and of its first blocks, which compile kernels."""
+    """Steps and wall-clock seconds of this session, and of its first blocks, which compile kernels.
+
+    compiling : seconds of compiling in the steps.
+    """
 
     steps: int = 0
     seconds: float = 0.0
     blocks: int = 0
+    compiling: float = 0.0
     early: tuple[int, float] = (0, 0.0)
 
     def block(self, steps: int, seconds: float) -> None:
@@ -219,7 +225,7 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> _Spent:
         _record_due(run, record)
         record.save(model, run.schedules)
     while not run.ended(model.step, model.time):
-        start, busy, before = clock.perf_counter(), clock.process_time(), model.step
+        start, busy, before, compiled = clock.perf_counter(), clock.process_time(), model.step, TURNS.seconds
         last = None if run.step_seconds is None else run.last_step
         model.advance(block(model, last, run.schedules.values(), rate))
         assert model.step > before, "advance() must count its steps"
@@ -228,6 +234,7 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> _Spent:
         record.cost.block(model.step - before, clock.process_time() - busy)
         rate = (model.step - before) / max(wall, 1e-9)
         spent.block(model.step - before, wall)
+        spent.compiling += TURNS.seconds - compiled
         watch.update(model.step, model.time)
         _after_block(run, record)
         if stop and not run.ended(model.step, model.time):
