@@ -18,7 +18,7 @@ def test_a_run_leaves_its_page_with_its_pictures_unless_it_shall_not(monkeypatch
     done = SimpleNamespace(steps_per_second=1.0)
     name = "porescale.common.api.run_scene.drive_scene" if module == "porescale.program" else f"{module}.drive_scene"
     monkeypatch.setattr(name, lambda *_, after, **more: ends.append(after) or done)
-    scene = SimpleNamespace(grains=None, output=SimpleNamespace(report=wanted))
+    scene = SimpleNamespace(grains=None, polygon=(), output=SimpleNamespace(report=wanted))
     program.drive(SimpleNamespace(derived=None), tmp_path, scene, card={}, resume=False, quiet=True)
     ends[0](tmp_path)
     assert pages == ([tmp_path] if wanted and pictures else [])
