@@ -71,7 +71,7 @@ def test_messages_are_found_with_their_repair():
     found = messages.collected()
     assert len(found) > 600
     known = {(it.text, it.repair) for it in found}
-    assert ("varies nothing", "give a table, or --vary section.key=a,b,c") in known
+    assert ("varies nothing", "give a table, --vary section.key=a,b,c, or --repeat N") in known
     assert any(it.kind == "warning" for it in found)
     assert any(it.kind == "stop" for it in found)
     # What is known only in a run is an ellipsis, and no name of a variable is left.
