@@ -135,7 +135,7 @@ def draw(runs: dict[str, list[dict[str, Any]]], path: Path) -> None:
             axes[2].plot(np.array(it["x"]) / 6.0, np.array(it["y"]) / 6.0, **hollow, label=f"{made}, experiment")
     for ax, x, y in (
         (axes[0], "time / √(H/g)", "front / length of the column"),
-        (axes[1], "time / √(H/g)", "pore pressure above hydrostatic / weight on the base"),
+        (axes[1], "time / √(H/g)", "excess pore pressure / weight on base"),
         (axes[2], "x / length of the column", "height / length of the column"),
     ):
         ax.set(xlabel=x, ylabel=y)
