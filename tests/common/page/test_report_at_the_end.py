@@ -15,10 +15,14 @@ def test_a_run_leaves_its_page_with_its_pictures_unless_it_shall_not(monkeypatch
     for patched in ("analysis.bed_permeability.write_permeability", "common.record.open_run.open_run"):
         monkeypatch.setattr(f"porescale.{patched}", lambda *_: None)
     monkeypatch.setattr("porescale.builders.cost.remember", lambda *_: None)
-    done = SimpleNamespace(steps_per_second=1.0)
+    monkeypatch.setattr("porescale.builders.cost.remember_run", lambda *_: None)
+    monkeypatch.setattr("porescale.builders.cost.expected", lambda *_: SimpleNamespace(finishing=0.0))
+    done = SimpleNamespace(steps_per_second=1.0, recording=0.0, finishing=0.0)
     name = "porescale.common.api.run_scene.drive_scene" if module == "porescale.program" else f"{module}.drive_scene"
     monkeypatch.setattr(name, lambda *_, after, **more: ends.append(after) or done)
-    scene = SimpleNamespace(grains=None, polygon=(), output=SimpleNamespace(report=wanted))
-    program.drive(SimpleNamespace(derived=None), tmp_path, scene, card={}, resume=False, quiet=True)
+    output, time = SimpleNamespace(report=wanted, snapshot_interval=1.0), SimpleNamespace(end=1.0)
+    scene = SimpleNamespace(grains=None, polygon=(), run=None, time=time, output=output)
+    model = SimpleNamespace(derived=SimpleNamespace(model_step=1.0), built_in=0.0)
+    program.drive(model, tmp_path, scene, card={}, resume=False, quiet=True)
     ends[0](tmp_path)
     assert pages == ([tmp_path] if wanted and pictures else [])
