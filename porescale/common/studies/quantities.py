@@ -96,12 +96,17 @@ LATE: dict[str, Callable[[NDArray[Any], NDArray[Any]], float]] = {
 
 
 def wrong(row: Mapping[str, Any]) -> str:
-    """Fault in where a row says to read, "" if there is none; a table may still lack its columns."""
+    """Fault in what a row says to read and to expect, "" if there is none; a table may still lack its columns."""
     for key in ("name", "column", "minus", "unit", "file"):
         if not isinstance(row.get(key, ""), str):
             return f"{key} is not text"
     if not isinstance(row.get("where", {}), Mapping):
         return "where is not a table"
+    for key in ("value", "tolerance"):
+        if key in row and not _is_number(row[key]):
+            return f"{key} is not a number"
+    if row.get("tolerance", 0) < 0:
+        return "tolerance is below 0"
     at = row["at"]
     if isinstance(at, str):
         return "" if at in WHERE else f"at is not one of {', '.join(WHERE)}, a time or a table"
