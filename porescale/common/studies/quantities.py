@@ -112,7 +112,8 @@ def wrong(row: Mapping[str, Any]) -> str:
         return "" if at in WHERE else f"at is not one of {', '.join(WHERE)}, a time or a table"
     if not isinstance(at, Mapping):
         return "" if _is_number(at) else "at is not a time"
-    falls, known = ("first_below", "last_above"), (*LATE, "quantile", "first_below", "last_above")
+    falls = ("first_below", "first_above", "last_above")
+    known = (*LATE, "quantile", *falls)
     chosen = [key for key in at if key != "share_of"]
     if len(chosen) != 1 or chosen[0] not in known:
         return f"at has not one of {', '.join(known)}"

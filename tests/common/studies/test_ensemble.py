@@ -22,9 +22,10 @@ from porescale.common.studies.parameter_table import Point, read_points, varied
 from porescale.common.studies.runner import Campaign, Ended
 from porescale.common.studies.schedulers.local import Local
 from porescale.common.studies.schedulers.task import Process
-from porescale.common.studies.sweep import run_points
+from porescale.common.studies.sweep import expected, run_points
 from tests.reference.toy_package import TOY
 
+CASES = Path(__file__).resolve().parents[3] / "cases"
 SCENE = "[decay]\nrate = 3\n[noise]\nseed = 5\n[quality.fine.decay]\nstart = 2\n"
 AT_END = {"name": "left", "column": "left (m)", "at": "end", "unit": "m", "value": 0.06, "tolerance": 0.05}
 
@@ -113,6 +114,11 @@ def test_what_a_row_expects_is_refused_in_one_line_before_anything_runs(toy, sce
     assert said in line
     assert "left" in line
     assert not (scene.parent / "runs").exists()
+
+
+@pytest.mark.parametrize("case", sorted(path.parent.name for path in CASES.glob("*/expected.toml")))
+def test_a_sweep_reads_what_every_case_expects(case):
+    assert expected(CASES / case / "scene.toml") is not None
 
 
 def test_every_combination_is_repeated_on_the_same_seeds_and_named_as_if_they_were_varied(scene):
