@@ -11,6 +11,7 @@ the scene are read as well, up to END; their rows replace those of the folder.
 import argparse
 import datetime
 import json
+import subprocess
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import porescale as ps
-from porescale.common.record.card import mark
 
 HERE = Path(__file__).resolve().parent
 README = HERE / "README.md"
@@ -33,6 +33,16 @@ Rows = list[list[float]]
 """Time (s), height of the centre of mass (m), front (m)."""
 Runs = dict[tuple[str, float], list[dict[str, Any]]]
 """Runs by level and ratio, one for each packing: {"commit": that it was made at, "" where not known, "rows": Rows}."""
+
+
+def commit() -> str:
+    """Eight digits of the commit of the tree that this script lies in, with a + where files have changed since; ""
+    outside of one."""
+    words = ["git", "-C", str(HERE), "describe", "--always", "--exclude=*", "--abbrev=8", "--dirty=+"]
+    try:
+        return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.SubprocessError):
+        return ""
 
 
 def run(level: str, ratio: float, seed: int) -> Rows:
@@ -58,10 +68,10 @@ def swept(folders: list[Path]) -> Runs:
             continue
         every = round(EVERY / (time[1] - time[0]))
         columns = [run.series[name][time < END + 0.5 * EVERY] for name in ("time (s)", *COLUMNS)]
-        commit = known["hash"][:8] + "+" * known["changed"] if known else ""
+        made_at = known["hash"][:8] + "+" * known["changed"] if known else ""
         rows = np.array(columns).T[:: max(1, every)].tolist()
         ratio = run.card["scene"]["grains"]["hydraulic_radius_ratio"]
-        runs.setdefault((run.card["quality"], ratio), []).append({"commit": commit, "rows": rows})
+        runs.setdefault((run.card["quality"], ratio), []).append({"commit": made_at, "rows": rows})
     return runs
 
 
@@ -106,11 +116,11 @@ def table(runs: Runs) -> list[str]:
     )
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     for (level, ratio), made in sorted(runs.items()):
-        commit, many = commit_of(made, f"{level}, λ = {ratio:g}") or "–", [it["rows"] for it in made]
+        at, many = commit_of(made, f"{level}, λ = {ratio:g}") or "–", [it["rows"] for it in made]
         fallen = [[100.0 * (HIGH - np.interp(t, *np.array(one).T[:2])) / (HIGH - LOW) for one in many] for t in SHOWN]
         front = [100.0 * (0.09 - one[-1][2]) / 0.09 for one in many]
         cells = [spread([half(one) for one in many], 1.0, 2), *(spread(it, 1.0, 0) for it in (*fallen, front))]
-        lines.append(f"| {level} | {ratio:g} | {len(many)} | " + " | ".join([*cells, commit]) + " |")
+        lines.append(f"| {level} | {ratio:g} | {len(many)} | " + " | ".join([*cells, at]) + " |")
     return lines
 
 
@@ -162,7 +172,7 @@ def main() -> None:
             continue
         file = asked.out / f"{level}-{ratio}-{seed}.json"
         if not file.exists() and not asked.kept:
-            made = {"commit": mark()["commit"], "rows": run(level, ratio, seed)}
+            made = {"commit": commit(), "rows": run(level, ratio, seed)}
             file.write_text(json.dumps(made), encoding="utf-8")
             print(f"{level}, lambda {ratio}, packing {seed}: done", flush=True)
         if file.exists():

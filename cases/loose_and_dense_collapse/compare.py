@@ -10,6 +10,7 @@ pressures over its buoyant weight on the base, times over sqrt(H/g), H its heigh
 import argparse
 import datetime
 import json
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import porescale as ps
-from porescale.common.record.card import mark
 
 HERE = Path(__file__).resolve().parent
 MADE: dict[str, dict[str, Any]] = {
@@ -57,6 +57,16 @@ EXPERIMENT: dict[str, dict[str, Any]] = {
     },
 }  # fmt: skip
 LIQUID, BEADS = 1010.0, 2500.0  # kg/m3
+
+
+def commit() -> str:
+    """Eight digits of the commit of the tree that this script lies in, with a + where files have changed since; ""
+    outside of one."""
+    words = ["git", "-C", str(HERE), "describe", "--always", "--exclude=*", "--abbrev=8", "--dirty=+"]
+    try:
+        return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.SubprocessError):
+        return ""
 
 
 def run(made: str, seed: int) -> dict[str, Any]:
@@ -184,12 +194,12 @@ def table(runs: dict[str, list[dict[str, Any]]]) -> list[str]:
 
 def write(runs: dict[str, list[dict[str, Any]]]) -> None:
     """Picture and table, with date and commit, into this folder: between the marks of the README."""
-    commit = commit_of(runs)
+    found = commit_of(runs)
     draw(runs, HERE / "compare.png")
     readme = HERE / "README.md"
     head, _, rest = readme.read_text(encoding="utf-8").partition("<!-- compare -->")
     tail = rest.partition("<!-- end of compare -->")[2]
-    at = f" at commit {commit}" if commit else ""
+    at = f" at commit {found}" if found else ""
     made = f"Made on {datetime.date.today().isoformat()}{at} by `compare.py`, quality draft."
     block = "\n".join(["<!-- compare -->", *table(runs), "", made, "<!-- end of compare -->"])
     readme.write_text(head + block + tail, encoding="utf-8")
@@ -209,7 +219,7 @@ def main() -> None:
         for made, many in runs.items():
             file = asked.out / f"{made}-{seed}.json"
             if not file.exists() and not asked.kept:
-                file.write_text(json.dumps({"commit": mark()["commit"]} | run(made, seed)), encoding="utf-8")
+                file.write_text(json.dumps({"commit": commit()} | run(made, seed)), encoding="utf-8")
                 print(f"{made}, packing {seed}: done", flush=True)
             if file.exists():
                 many.append(json.loads(file.read_text(encoding="utf-8")))

@@ -92,3 +92,20 @@ def test_a_refused_sweep_writes_no_table(tmp_path, monkeypatch):
     done[0] = 2
     with pytest.raises(SystemExit, match="the sweep was refused: nothing is written"):
         writer["ensemble"](tmp_path, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["column_collapse/lambda.py", "loose_and_dense_collapse/compare.py"])
+def test_a_run_is_kept_with_the_commit_of_the_tree(name, tmp_path, monkeypatch):
+    made = script(name)
+    head = ["git", "-C", str(tmp_path)]
+    monkeypatch.setattr(made, "HERE", tmp_path)
+    assert made.commit() == ""
+    subprocess.run([*head, "init", "-q"], check=True)
+    (tmp_path / "scene.toml").write_text("a")
+    subprocess.run([*head, "add", "."], check=True)
+    who = ["-c", "user.name=a", "-c", "user.email=a@b"]
+    subprocess.run([*head, *who, "commit", "-q", "-m", "a"], check=True)
+    whole = subprocess.run([*head, "rev-parse", "HEAD"], check=True, capture_output=True, text=True).stdout
+    assert made.commit() == whole[:8]
+    (tmp_path / "scene.toml").write_text("b")
+    assert made.commit() == whole[:8] + "+"
