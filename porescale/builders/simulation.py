@@ -179,6 +179,8 @@ class Simulation(ShownSimulation):
         """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
         try:
             self._advance(steps)
+            if self.fluid:
+                self.fluid.wait()  # so that a device's time, and its errors, are those of the steps
         except Unstable as error:
             self._check_forces()
             raise self.stepper.explained(error) from None
