@@ -35,8 +35,8 @@ from porescale.scene.scene import Scene
 
 WEEK = 7 * 86400.0
 """Seconds in a week."""
-TIPS = 2
-"""Cells that the tips at two corners add to the extent of a polygon, but for acute ones, of which they are longer."""
+TIPS = 5
+"""Cells for the tips at two corners of a polygon (``pointed``): those of 60 degrees take about 2, needles more."""
 SPHERES = 0.4
 """Porosity of the bed of spheres that a bed of discs is compared with."""
 
