@@ -34,13 +34,13 @@ def report(scene: Scene) -> Report:
 
 
 def build(scene: Scene) -> Simulation:
-    """The simulation of a scene, which knows how long it took to build."""
+    """The simulation of a scene, which knows how long it took to build, and what was compiled before."""
     from porescale.builders.build import build as build_scene
     from porescale.common.compiled.turns import TURNS
 
-    began, compiling = clock.perf_counter(), TURNS.seconds
+    began, compiled = clock.perf_counter(), (len(TURNS.kept), TURNS.seconds)
     model = build_scene(scene)
-    model.built_in = clock.perf_counter() - began - (TURNS.seconds - compiling)
+    model.built_in, model.compiled_before = clock.perf_counter() - began - (TURNS.seconds - compiled[1]), compiled
     return model
 
 
@@ -77,7 +77,7 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
     remember(model.derived, outcome.steps_per_second, gpu)
     if outcome.steps_per_second and not gpu and not options.get("resume"):
         taken = {BUILDING: model.built_in, RECORDING: outcome.recording, FINISHING: outcome.finishing}
-        remember_run(model.derived, count, taken)
+        remember_run(model.derived, count, taken, model.compiled_before)
     return outcome
 
 

@@ -2,13 +2,15 @@
 
     python cases/loose_and_dense_collapse/compare.py --packings 3
 
-Every run is kept in the folder, so that a call that was stopped goes on.  Lengths are over the column's length,
+Every run is kept in the folder with its commit, so that a call that was stopped goes on; runs of several commits are
+refused.  Lengths are over the column's length,
 pressures over its buoyant weight on the base, times over sqrt(H/g), H its height.
 """
 
 import argparse
 import datetime
 import json
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +57,16 @@ EXPERIMENT: dict[str, dict[str, Any]] = {
     },
 }  # fmt: skip
 LIQUID, BEADS = 1010.0, 2500.0  # kg/m3
+
+
+def commit() -> str:
+    """Eight digits of the commit of the tree that this script lies in, with a + where files have changed since; ""
+    outside of one."""
+    words = ["git", "-C", str(HERE), "describe", "--always", "--exclude=*", "--abbrev=8", "--dirty=+"]
+    try:
+        return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.SubprocessError):
+        return ""
 
 
 def run(made: str, seed: int) -> dict[str, Any]:
@@ -148,13 +160,32 @@ def draw(runs: dict[str, list[dict[str, Any]]], path: Path) -> None:
     figure.savefig(path, dpi=90)
 
 
+def spread(values: Any) -> str:
+    """Mean and deviation of one packing; the median where some never come to it, for a mean of the others would leave
+    the slowest out."""
+    found = np.asarray(values, float)
+    never = int(np.isinf(found).sum())
+    if never:
+        said = f"median {np.median(found):.3g}, " if 2 * never < len(found) else ""
+        return "never" if never == len(found) else f"{said}{never} of {len(found)} never"
+    return f"{found.mean():.3g}" + (f" ± {found.std(ddof=1):.1g}" if len(found) > 1 else "")
+
+
+def commit_of(runs: dict[str, list[dict[str, Any]]]) -> str:
+    """The one commit that all runs were made at, "" where not known; ends the script where they are of several."""
+    commits = sorted({one.get("commit", "") for many in runs.values() for one in many})
+    if len(commits) > 1:
+        raise SystemExit(f"runs of several commits, {', '.join(it or 'unknown' for it in commits)}: not mixed")
+    return commits[0] if commits else ""
+
+
 def table(runs: dict[str, list[dict[str, Any]]]) -> list[str]:
     """Lines of a table: means over packings with the deviation of one, beside the experiment."""
     names = ("solid fraction", "pore pressure", "half a length", "run-out", "height")
     lines = ["| | packings | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
     for made, many in runs.items():
         found = {name: np.array([numbers(one)[name] for one in many]) for name in names}
-        cells = [f"{v.mean():.3g}" + (f" ± {v.std(ddof=1):.1g}" if len(v) > 1 else "") for v in found.values()]
+        cells = [spread(values) for values in found.values()]
         lines.append(f"| {made} | {len(many)} | " + " | ".join(cells) + " |")
         if made in EXPERIMENT:
             lines.append(f"| experiment, {made} | | " + " | ".join(f"{v:.3g}" for v in observed(made).values()) + " |")
@@ -162,12 +193,14 @@ def table(runs: dict[str, list[dict[str, Any]]]) -> list[str]:
 
 
 def write(runs: dict[str, list[dict[str, Any]]]) -> None:
-    """Picture and table, with the date, into this folder: between the marks of the README."""
+    """Picture and table, with date and commit, into this folder: between the marks of the README."""
+    found = commit_of(runs)
     draw(runs, HERE / "compare.png")
     readme = HERE / "README.md"
     head, _, rest = readme.read_text(encoding="utf-8").partition("<!-- compare -->")
     tail = rest.partition("<!-- end of compare -->")[2]
-    made = "Made on " + datetime.date.today().isoformat() + " by `compare.py`, quality draft."
+    at = f" at commit {found}" if found else ""
+    made = f"Made on {datetime.date.today().isoformat()}{at} by `compare.py`, quality draft."
     block = "\n".join(["<!-- compare -->", *table(runs), "", made, "<!-- end of compare -->"])
     readme.write_text(head + block + tail, encoding="utf-8")
 
@@ -186,11 +219,12 @@ def main() -> None:
         for made, many in runs.items():
             file = asked.out / f"{made}-{seed}.json"
             if not file.exists() and not asked.kept:
-                file.write_text(json.dumps(run(made, seed)), encoding="utf-8")
+                file.write_text(json.dumps({"commit": commit()} | run(made, seed)), encoding="utf-8")
                 print(f"{made}, packing {seed}: done", flush=True)
             if file.exists():
                 many.append(json.loads(file.read_text(encoding="utf-8")))
     runs = {made: many for made, many in runs.items() if many}
+    commit_of(runs)
     draw(runs, asked.out / "compare.png")
     if asked.write:
         write(runs)

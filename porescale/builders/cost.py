@@ -120,17 +120,23 @@ def _compiling(known: dict[str, Any]) -> float:
     return float(known[COMPILING][0]) * missing / max(len(names), 1)
 
 
-def remember_run(derived: Derived, snapshots: int, seconds: dict[str, float]) -> None:
-    """Note, as `remember` does, what the `PARTS` of a run took (s) and what it compiled, for the next ``check``."""
+def remember_run(
+    derived: Derived, snapshots: int, seconds: dict[str, float], since: tuple[int, float] = (0, 0.0)
+) -> None:
+    """Note, as `remember` does, what the `PARTS` of a run took (s) and what it compiled, for the next ``check``.
+
+    since : kernels and seconds of compiling of this process before the run.
+    """
     every, kind = _besides(), _kind(derived)
     known = every.setdefault(kind, {})
     for part in PARTS:
         taken = seconds.get(part, 0.0) / _nominal(part, derived, snapshots)
         if math.isfinite(taken) and taken > 0.0:
             known[part] = [*known.get(part, []), taken][-LAST:]
-    kernels = list(dict.fromkeys(TURNS.kept))
+    before, compiling = since
+    kernels = list(dict.fromkeys(TURNS.kept[before:]))
     if kernels and len(kernels) >= len(known.get("kernels", [])):  # else a few that changed
-        known |= {"kernels": kernels, COMPILING: [TURNS.seconds]}
+        known |= {"kernels": kernels, COMPILING: [TURNS.seconds - compiling]}
     _write({"slowness": _slowness(), BESIDES: every})
 
 

@@ -17,7 +17,7 @@ from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_ce
 from porescale.builders.checks.regime import check_regime, expected_speed, travel_step
 from porescale.builders.initial.clumps import lightest
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
-from porescale.builders.initial.frames import Placed, lightest_frame, placed_frames, sizes_of
+from porescale.builders.initial.frames import Placed, lightest_frame, longest_of, placed_frames, sizes_of
 from porescale.builders.initial.packing import radii_of
 from porescale.builders.initial.placed import by_hand, placed
 from porescale.builders.initial.rock import rock_frames
@@ -59,6 +59,7 @@ class Derived:
     warnings: tuple[str, ...] = field(default=())
     corners: int = 0  # of bodies of segments
     precision: int = 8  # bytes of a number of the fluid
+    polygons: tuple[int, float] = (0, 0.0)  # in fluid, and the largest extent of them, m
 
 
 def derive(scene: Scene) -> Derived:
@@ -128,6 +129,7 @@ def derive(scene: Scene) -> Derived:
         scales, cells, column, law, wall_law, limit, step, steps, model_step, grain_count(scene), sizes,
         mean_mass, speed, variation, tuple(warnings), sum(len(it.frame.corners) for it in frames),
         4 if scene.fluid and scene.fluid.precision == "float32" else 8,
+        (len(frames), longest_of(frames)) if scales else (0, 0.0),
     )  # fmt: skip
 
 

@@ -3,6 +3,8 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from porescale.analysis.permeability import bed_of_spheres, gebart, kozeny_carman, ratio_for
 from porescale.builders.checks.clear_packing import require_clear_packing
 from porescale.builders.checks.device import device_of
@@ -33,6 +35,8 @@ from porescale.scene.scene import Scene
 
 WEEK = 7 * 86400.0
 """Seconds in a week."""
+TIPS = 5
+"""Cells for the tips at two corners of a polygon (``pointed``): those of 60 degrees take about 2, needles more."""
 SPHERES = 0.4
 """Porosity of the bed of spheres that a bed of discs is compared with."""
 
@@ -232,18 +236,32 @@ def _regime(density: float, gravity: float, derived: Derived, out: Report) -> No
                 "3 (rho_s - rho) g phi H/(rho c²), below 0.05")  # fmt: skip
 
 
-def _device(derived: Derived, steps: int, on_cpu: float, out: Report) -> float:
-    """What the GPU needs, what there is, and what it would gain; returns seconds on it, those on the CPU if unknown."""
-    from porescale.common.compiled.cuda import describe, makers_bandwidth
+def bytes_on_gpu(scene: Scene, derived: Derived) -> int:
+    """Device memory that a run of the scene takes: of the fluid, and of bodies in it, grains as wide as the widest."""
+    from porescale.coupling.coverage.polygon import SPARE
     from porescale.coupling.device import bodies
     from porescale.lbm.device.fluid import bytes_needed
 
+    assert scene.fluid
     assert derived.cells
+    assert derived.scales
+    need, spacing = bytes_needed(*derived.cells, derived.precision), derived.scales.spacing
+    grains, (polygons, longest) = derived.grain_count - len(scene.disc), derived.polygons
+    widest = [derived.diameters[2]] * grains if derived.diameters else []
+    rows = [math.ceil(it / spacing) + 2 for it in (*widest, *(it.diameter for it in scene.disc))]
+    rows += [math.ceil(longest / spacing) + TIPS + SPARE] * polygons
+    if rows:
+        soft = has_soft_rim(scene.fluid)
+        need += bodies.bytes_needed(*derived.cells, derived.precision, np.array(rows), polygons, soft=soft)
+    return need
+
+
+def _device(scene: Scene, derived: Derived, steps: int, on_cpu: float, out: Report) -> float:
+    """What the GPU needs, what there is, and what it would gain; returns seconds on it, those on the CPU if unknown."""
+    from porescale.common.compiled.cuda import describe, makers_bandwidth
+
     name, memory_bytes = describe()
-    need = bytes_needed(*derived.cells, derived.precision)
-    if derived.grain_count and derived.diameters and derived.scales:
-        across = math.ceil(derived.diameters[2] / derived.scales.spacing)
-        need += bodies.bytes_needed(*derived.cells, derived.precision, derived.grain_count, across)
+    need = bytes_on_gpu(scene, derived)
     out.row("memory of the GPU", need / 2**20, "MiB", name)
     if memory_bytes and need > memory_bytes:
         out.warn(f"the GPU has {memory_bytes / 2**30:.1f} GiB: the run will not start there")
@@ -274,7 +292,7 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     on_gpu = device_of(scene) == "gpu" and derived.cells is not None
     if on_gpu:
         out.row("time on the CPU", told.steps, "s", known)
-        seconds = _device(derived, steps, told.steps, out)
+        seconds = _device(scene, derived, steps, told.steps, out)
     else:
         out.row("time", seconds, "s", known)
         out.row("of it compiling", told.compiling, "s", "kernels that are not kept on disk")

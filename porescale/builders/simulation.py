@@ -35,10 +35,12 @@ class Simulation(ShownSimulation):
     step : model steps done (fluid steps, or contact steps without fluid);  step_seconds : s;  time : s.
     parts : the stepper first;  scene, derived : what it was built from.
     fluid, grains, coupled, weight (n, 2) N/m of dry grains : None where the scene has no such thing;  frames : bodies
-    of segments;  built_in : seconds that building took, but for compiling.
+    of segments;  built_in : seconds that building took, but for compiling;  compiled_before : kernels that this process
+    had compiled before, and the seconds that they took.
     """
 
     built_in = 0.0
+    compiled_before: tuple[int, float] = (0, 0.0)
 
     def __init__(self, system: System, stepper: Stepper) -> None:
         """``system`` : with its parts in the order of their columns, tables, arrays and state;  ``stepper`` : of it."""
@@ -179,6 +181,8 @@ class Simulation(ShownSimulation):
         """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
         try:
             self._advance(steps)
+            if self.fluid:
+                self.fluid.wait()  # so that a device's time, and its errors, are those of the steps
         except Unstable as error:
             self._check_forces()
             raise self.stepper.explained(error) from None

@@ -107,6 +107,9 @@ class Fluid:
         self.links.close(self.flat, odd, (self.law.fx, self.law.fy) if field is None else (field[0], field[1]))
         self.step += 1
 
+    def wait(self) -> None:
+        """Wait until the steps asked for are done: at once here, where they are done when ``advance`` returns."""
+
     @property
     def law_of_sweep(self) -> Any:
         """The law of collision as sweeps take it: without a force that is zero, or with the force of every cell."""

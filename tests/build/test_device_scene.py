@@ -3,6 +3,8 @@
 import copy
 import subprocess
 import sys
+import warnings
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -10,10 +12,11 @@ import pytest
 from porescale.builders.build import build
 from porescale.builders.cost import expected_seconds, remember, seconds_on_gpu
 from porescale.builders.derive import derive
-from porescale.builders.report import report
+from porescale.builders.report import bytes_on_gpu, report
 from porescale.builders.scene import Scene
 from porescale.common.compiled import cuda
 from porescale.common.core.errors import InputError, Unstable
+from porescale.lbm.device.fluid import bytes_needed
 
 FLUID = {"spacing": 1e-3, "relaxation_time": 0.7, "viscosity": 1e-5, "body_force": [0.01, 0]}
 SCENE = {
@@ -187,6 +190,92 @@ def test_a_diverging_fluid_is_found_without_its_populations(monkeypatch):
             simulation.check()
         said.append(str(error.value))
     assert said[0] == said[1]
+
+
+def test_a_block_of_steps_ends_when_the_device_has_done_it(monkeypatch):
+    calls, simulation = [], build(Scene(**ON_GPU))
+    monkeypatch.setattr(simulation.stepper, "advance", lambda: calls.append("step"))
+    monkeypatch.setattr("porescale.lbm.device.fluid.synchronize", lambda: calls.append("wait"))
+    simulation.advance(2)
+    assert calls == ["step", "step", "wait"]
+    calls.clear()
+    simulation = build(Scene(**SCENE))
+    monkeypatch.setattr(simulation.stepper, "advance", lambda: calls.append("step"))
+    simulation.advance(2)
+    assert calls == ["step", "step"]  # the check that must fail: a fluid on the CPU waits for nothing
+
+
+@pytest.mark.parametrize("name", cuda.STREAM_PER_THREAD)
+def test_a_stream_0_for_each_thread_is_refused_in_one_line(name, monkeypatch):
+    monkeypatch.setenv(name, "0")
+    cuda.require_device()
+    monkeypatch.setenv(name, "1")
+    with pytest.raises(InputError, match=f"{name} is set") as refused:
+        cuda.require_device()
+    assert len(str(refused.value).splitlines()) == 1
+
+
+def test_pinned_memory_that_does_not_suffice_is_one_line(monkeypatch):
+    def full(*_):
+        raise RuntimeError("Call to cuMemHostAlloc results in CUDA_ERROR_OUT_OF_MEMORY")
+
+    monkeypatch.setattr(cuda, "cuda", lambda: type("Machine", (), {"pinned_array": staticmethod(full)}))
+    with pytest.raises(InputError, match=r"the host has no pinned memory for 1\.00 GiB more"):
+        cuda.pinned_array(2**27, np.float64)
+
+
+def test_small_grids_are_not_warned_of():
+    """The words are those of numba's warning; others of its kind still come."""
+    numba = import_module("numba.core.errors").NumbaPerformanceWarning
+    cuda.cuda.cache_clear()
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        cuda.cuda()
+        for words in (
+            "Grid size 3 will likely result in GPU under-utilization due to low occupancy.",
+            "Host array used",
+        ):
+            warnings.warn(numba(words), stacklevel=1)
+    assert [str(it.message).count("Host array used") for it in seen] == [1]
+
+
+POLYGONS_ON_GPU = {
+    **{name: it for name, it in GRAINS_ON_GPU.items() if name != "disc"},
+    "grains": {"density": 2500, "hydraulic_radius_ratio": 1.0},
+    "polygon": [
+        {"corners": [[-0.003, -0.0025], [0.003, -0.0025], [0, 0.0025]], "thickness": 5e-4, "at": [[0.008, 0.007]]}
+    ],
+}
+SOFT_ON_GPU = {**GRAINS_ON_GPU, "fluid": {**GRAINS["fluid"], "rim": "soft"}}
+LARGE_HELD_ON_GPU = {
+    **GRAINS_ON_GPU,
+    "grains": {**GRAINS["grains"], "grain": GRAINS["grains"]["grain"][:1]},
+    "disc": [{"x": 0.0185, "y": 0.007, "diameter": 0.01}],
+}
+
+
+@pytest.mark.parametrize("table", [ON_GPU, GRAINS_ON_GPU, SOFT_ON_GPU, POLYGONS_ON_GPU, LARGE_HELD_ON_GPU])
+def test_check_counts_no_less_memory_than_a_build_takes(table, monkeypatch):
+    """Every array that is made there; patches are counted a block too wide, and grains as wide as the widest."""
+    machine, taken = cuda.cuda(), []
+    for name in ("to_device", "device_array"):
+        monkeypatch.setattr(machine, name, counted(getattr(machine, name), taken))
+    scene = Scene(**table)
+    build(scene)
+    need = bytes_on_gpu(scene, derive(scene))
+    assert sum(taken) <= need < 2 * sum(taken)
+    assert sum(taken) > bytes_needed(*derive(scene).cells, 8) or table is ON_GPU  # the check that must fail
+
+
+def counted(make, taken):
+    """``make``, with the bytes of what it makes noted in ``taken``."""
+
+    def made(*arguments):
+        found = make(*arguments)
+        taken.append(found.nbytes)
+        return found
+
+    return made
 
 
 def memory_row(scene):

@@ -3,15 +3,18 @@
 import itertools
 import json
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from porescale import program
 from porescale.builders import cost
 from porescale.builders.build import build
 from porescale.builders.checks.regime import terminal_speed
 from porescale.builders.derive import derive
 from porescale.builders.parts.flow_fields import fluid_row
+from porescale.common.compiled import turns as turns_module
 from porescale.common.compiled.turns import Turns
 from porescale.lbm.scales import Scales
 from porescale.output.surface import surface
@@ -211,6 +214,30 @@ def test_few_kernels_that_changed_do_not_stand_for_all(tmp_path, monkeypatch):
         turns.kept, turns.seconds = kept, seconds
         cost.remember_run(derived, 11, taken)
     assert cost.expected(derived, 1000, 11).compiling == pytest.approx(30.0)  # none of the three is on disk
+
+
+@pytest.mark.parametrize("compiles", [True, False])
+def test_a_second_run_in_a_process_notes_what_it_compiled_itself(tmp_path, monkeypatch, compiles):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(cost, "cache_folder", lambda: tmp_path)
+    mine = Turns(kept=["a", "b"], seconds=30.0)  # those of a first run
+    for module in (cost, turns_module):
+        monkeypatch.setattr(module, "TURNS", mine)
+    done = SimpleNamespace(steps_per_second=1.0, recording=1.0, finishing=1.0)
+
+    def driven(*_, **more):
+        if compiles:
+            mine.kept.append("c")
+            mine.seconds += 7.0
+        return done
+
+    monkeypatch.setattr("porescale.common.api.run_scene.drive_scene", driven)
+    scene = dry(grains={"density": 2500, "grain": [grain(0.004, 0.004)]})
+    model = program.build(scene)
+    program.drive(model, tmp_path / "run", scene, card={}, resume=False, quiet=True)
+    known = cost._besides()[cost._kind(model.derived)]
+    assert known.get("kernels") == (["c"] if compiles else None)
+    assert known.get(cost.COMPILING) == ([7.0] if compiles else None)
 
 
 def test_a_spoiled_note_of_a_run_is_a_guess(tmp_path, monkeypatch):

@@ -19,28 +19,30 @@ from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import fitting_weights
 from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.device import fluid as device_fluid
 from porescale.lbm.device.fluid import DeviceFluid
 from porescale.lbm.fluid import Fluid
 
 NX, NY = 38, 14
 WALLS = Sides(left="wall", right="wall", bottom="wall", top="slip")
 PLACES = np.array([[9.2, 6.1], [13.9, 7.3], [37.3, 13.2]])  # two that overlap, one across the corner of a periodic box
+ROW = np.array([[9.0, 6.0], [13.0, 7.0], [17.0, 6.0]])  # of which the middle one overlaps both
 VELOCITY = np.array([[0.02, 0.01], [-0.03, 0.02], [0.01, 0.04]])
 SPIN = np.array([0.01, -0.02, 0.003])
 
 
-def started(*, device, dtype=np.float64, sides=None, force=(2e-4, -1e-4), polygons=None, **options):
-    """A random flow of 38 by 14 cells, two tiles along each axis, and three discs in it."""
-    fluid = (DeviceFluid if device else Fluid)(NX, NY, 0.7, force=force, dtype=dtype, sides=sides)
-    random = np.random.default_rng(1)
-    fluid.set_flow(*(0.05 * random.uniform(-1, 1, (2, NY, NX))), 1 + 0.01 * random.uniform(-1, 1, (NY, NX)))
+def started(*, device, dtype=np.float64, sides=None, force=(2e-4, -1e-4), polygons=None, size=(NX, NY), **options):
+    """A random flow, of 38 by 14 cells, two tiles along each axis, and three discs in it."""
+    fluid = (DeviceFluid if device else Fluid)(*size, 0.7, force=force, dtype=dtype, sides=sides)
+    random, shape = np.random.default_rng(1), size[::-1]
+    fluid.set_flow(*(0.05 * random.uniform(-1, 1, (2, *shape))), 1 + 0.01 * random.uniform(-1, 1, shape))
     kind = DeviceSaturatedCells if device else SaturatedCells
     return fluid, kind(fluid, [3.3, 3.1, 2.2], polygons=polygons, **options)
 
 
-def gone(fluid, cells, steps=2, *, moving=True, turn=None):
+def gone(fluid, cells, steps=2, *, moving=True, turn=None, places=PLACES):
     """Loads of each step and the populations after them."""
-    found, places, velocity, spin = [], PLACES.copy(), VELOCITY.copy(), SPIN.copy()
+    found, places, velocity, spin = [], np.array(places, float), VELOCITY.copy(), SPIN.copy()
     for k in range(steps):
         cells.advance(fluid, places, velocity, spin)
         found += [cells._load.copy(), cells._entrained.copy(), cells.push.copy(), cells._shift.copy()]
@@ -117,10 +119,94 @@ def test_members_of_a_clump_that_overlap_hold_their_union():
     found = []
     for device in (False, True):
         fluid, cells = started(device=device)
-        cells.pairs = np.array([[0, 1]])
-        found.append(gone(fluid, cells, 1))
+        cells.pairs = np.array([[0, 1], [1, 2]])
+        found.append(gone(fluid, cells, 1, places=ROW))
     assert same(*found)
-    assert not same(found[1], gone(*started(device=True), 1))
+    assert not same(found[1], gone(*started(device=True), 1, places=ROW))
+
+
+@pytest.mark.parametrize(
+    "place",
+    [(0.4, 5.7), (25.0, 3.0), (-9.0, -9.0), (np.nan, 3.0)],
+    ids=["partly beyond walls", "beyond a wall", "beyond a corner", "nowhere"],
+)
+def test_a_box_of_less_than_a_tile_and_a_disc_at_its_edge(place):
+    """Discs that cover nothing have no load; the others are as without them."""
+    found = []
+    for device in (False, True):
+        fluid, cells = started(device=device, sides=WALLS, size=(20, 6))
+        found.append(gone(fluid, cells, 1, places=[[6.2, 3.1], [12.9, 2.3], place], moving=False))
+    assert same(*found)
+    load = found[1][0]
+    assert np.abs(load[:2]).min() > 0
+    assert bool(load[2].any()) == (place == (0.4, 5.7))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_groups_of_random_pairs_are_those_of_merging_one_pair_after_the_other(seed):
+    """The order of the groups themselves does not matter; pairs within one keep theirs."""
+    pairs = np.random.default_rng(seed).integers(0, 40, (25, 2))
+    order, begin = grouped(pairs, 40)
+    found = [order[a:b].tolist() for a, b in pairwise(begin)]
+    assert sorted(found) == sorted(merged(pairs.tolist()))
+    assert sorted(found) != sorted(merged(pairs[:-1].tolist()))  # the check that must fail
+
+
+def merged(pairs):
+    """Groups of pairs that share a disc, one pair after the other."""
+    group = list(range(40))
+    for n, m in pairs:
+        group = [group[n] if it == group[m] else it for it in group]
+    own = {}
+    for n, m in pairs:
+        own.setdefault(group[n], []).append([n, m])
+    return list(own.values())
+
+
+def test_no_pairs_are_no_groups():
+    order, begin = grouped(np.zeros((0, 2), np.int64), 3)
+    assert (len(order), begin.tolist()) == (0, [0])
+
+
+def in_order(calls):
+    """Whether work of the stream 0 lies between the other tiles of a step and what is sent for the next, and is what
+    comes last before loads are fetched: it waits for what was asked for before, and later work for it."""
+    waited, previous = True, None
+    for what, stream in calls:
+        if what == "fetch" and previous != ("add_bodies", 0):
+            return False
+        if what == "send lists" and not waited:
+            return False
+        waited = stream != "beside" and (waited or stream == 0)
+        previous = what, stream
+    return True
+
+
+def test_the_stream_0_keeps_the_steps_apart(monkeypatch):
+    """What was asked for, without doing it."""
+    fluid, cells = started(device=True, sides=WALLS)
+    there, calls = cells._there, []
+    names = {id(0): 0, id(there._beside): "beside", id(there._copies): "copies"}
+
+    def launched(compiled, count, block, *arguments, stream=0):
+        if count > 0:
+            calls.append((compiled.fn.__name__, names[id(stream)]))
+
+    def sent(mirror, count, stream):
+        calls.append(("send lists" if mirror is there._lists else "send", names[id(stream)]))
+
+    monkeypatch.setattr(device_bodies, "launch", launched)
+    monkeypatch.setattr(device_fluid, "launch", launched)
+    monkeypatch.setattr(device_bodies.Mirror, "send", sent)
+    monkeypatch.setattr(
+        device_bodies.Mirror, "fetch", lambda _, count, stream: calls.append(("fetch", names[id(stream)]))
+    )
+    for shift in (0.0, 0.1):
+        cells.advance(fluid, ROW + shift, VELOCITY, SPIN)
+    assert calls.count(("sweep_tiles", "beside")) == calls.count(("send lists", "copies")) == 2
+    assert in_order(calls)
+    assert not in_order([it for it in calls if it[0] != "pass_on_links"])  # what ends ``DeviceFluid.advance``
+    assert not in_order([it for it in calls if it[0] != "add_bodies"])
 
 
 def test_pairs_that_share_a_disc_are_of_one_group():

@@ -236,6 +236,12 @@ def lightest_frame(placed: Sequence[Placed], every: list[ContactLaw], radius: fl
     return grains.steering.lightest(every)
 
 
+def longest_of(placed: Sequence[Placed]) -> float:
+    """Largest distance (m) between two corners of a frame; 0 without any."""
+    corners = [np.array(it.frame.corners) for it in placed]
+    return max((float(np.hypot(*(at[:, None] - at).T).max()) for at in corners), default=0.0)
+
+
 def sizes_of(placed: Sequence[Placed]) -> list[float]:
     """Diameter (m) of the disc of equal area of every frame that forces move; of the polygons, where they move none."""
     meant = [it for it in placed if it.free] or [it for it in placed if it.frame.mass_properties().area]

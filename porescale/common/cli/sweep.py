@@ -90,7 +90,7 @@ def command(package: Package) -> Callable[..., int]:
         for text in ensemble_files.printed(lines):
             print(text)
         print(f"{folder / sweep_files.NAME}.csv, .md, .png" + (f", {ensemble_files.NAME}.csv" if asked else ""))
-        return conclude(ends) or int(not settings and ensemble_files.failed(lines))
+        return conclude(ends) or int(not settings and not quality and ensemble_files.failed(lines))
 
     return sweep
 

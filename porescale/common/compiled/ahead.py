@@ -23,6 +23,12 @@ from porescale.common.compiled.turns import TURNS, when_first
 
 PATIENCE = 10.0
 """Seconds in which the second process must have ended."""
+INSTALLED = ("site-packages", "dist-packages")
+"""Names of folders of installed packages."""
+
+
+_Second = tuple[subprocess.Popen[bytes], threading.Thread]
+"""The process, and the thread that writes its input."""
 
 
 @contextmanager
@@ -31,15 +37,15 @@ def ahead(module: str, given: Callable[[], Any]) -> Iterator[None]:
 
     given : what the process reads from its input, as JSON, or None where it is not wanted; called only then.
     """
-    started = list[subprocess.Popen[bytes]]()
+    started = list[_Second]()
     if sys.executable and cores() > 1:
         when_first(lambda: started.extend(_start(module, given())))
     try:
         yield
     finally:
         TURNS.first.clear()
-        for process in started:
-            _end(process)
+        for second in started:
+            _end(*second)
 
 
 def cores() -> int:
@@ -48,28 +54,47 @@ def cores() -> int:
     return len(allowed(0)) if allowed else os.cpu_count() or 1
 
 
-def _start(module: str, given: Any) -> list[subprocess.Popen[bytes]]:
-    """The process; none where it is not wanted, or the system lets none be started."""
+def _paths() -> str:
+    """PYTHONPATH of the process: this package's place first, unless it is installed and found anyway."""
+    root = Path(__file__).resolve().parents[3]
+    own = "" if root.name in INSTALLED else str(root)  # before the standard library it would hide modules of that
+    return os.pathsep.join(filter(None, [own, os.environ.get("PYTHONPATH")]))
+
+
+def _start(module: str, given: Any) -> list[_Second]:
+    """The process; none where it is not wanted, or the system lets none be started.
+
+    ``-P`` keeps files of the working folder from being taken for modules.  A pipe holds 64 KiB, and the process may
+    never read: its input is written by a thread.
+    """
     if given is None:
         return []
-    root = str(Path(__file__).resolve().parents[3])
-    paths = os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH")]))
+    text = json.dumps(given).encode() + b"\n"
     quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     try:
         process = subprocess.Popen(
-            [sys.executable, "-m", module], stdin=subprocess.PIPE, env={**os.environ, "PYTHONPATH": paths},
+            [sys.executable, "-P", "-m", module], stdin=subprocess.PIPE, env={**os.environ, "PYTHONPATH": _paths()},
             start_new_session=True, **quiet,
         )  # fmt: skip
-        assert process.stdin
-        process.stdin.write(json.dumps(given).encode() + b"\n")
-        process.stdin.flush()
     except OSError:
         return []
-    return [process]
+    pipe: Any = process.stdin
+
+    def write() -> None:
+        """Give the process its input."""
+        with suppress(OSError, ValueError):  # it has ended
+            pipe.write(text)
+            pipe.flush()
+
+    writer = threading.Thread(target=write, daemon=True)
+    writer.start()
+    return [(process, writer)]
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Ask the process to end, and see that it does."""
+def _end(process: subprocess.Popen[bytes], writer: threading.Thread) -> None:
+    """Ask the process to end, and see that it does; one that has not read its input has begun nothing."""
+    if writer.is_alive():
+        process.kill()
     with suppress(OSError):
         process.stdin.close()  # type: ignore[union-attr]
     try:
@@ -87,10 +112,15 @@ def serve(work: Callable[[Any], object]) -> None:
         """Wait for the end of the input."""
         sys.stdin.buffer.read()
         with TURNS.writing:
-            os._exit(0)
+            try:
+                TURNS.end()
+            finally:
+                os._exit(0)
 
     threading.Thread(target=leave, daemon=True).start()
     try:
-        work(given)
+        with suppress(Exception):  # the run comes to it, too, and says it
+            work(given)
+        TURNS.end()
     finally:
         os._exit(0)  # the thread still reads

@@ -9,6 +9,8 @@ the environment it is numba's simulator: every thread of every block in plain Py
 """
 
 import math
+import os
+import warnings
 from collections.abc import Callable
 from functools import cache
 from importlib import import_module
@@ -28,10 +30,16 @@ WARP = 32
 
 SIMULATOR = "numba's simulator"
 
+SMALL_GRID = r"(?s).*Grid size \d+ will likely result in GPU under-utilization"
+"""How numba warns of a launch below 128 blocks, whatever colours go before: rows of bodies and links are few."""
+STREAM_PER_THREAD = "NUMBA_CUDA_PER_THREAD_DEFAULT_STREAM", "CUDA_PYTHON_CUDA_PER_THREAD_DEFAULT_STREAM"
+"""Variables by which the stream 0 no longer waits for others, nor they for it: see ``launch``."""
+
 
 @cache
 def cuda() -> Any:
-    """numba's CUDA module."""
+    """numba's CUDA module, that no longer warns of small grids."""
+    warnings.filterwarnings("ignore", SMALL_GRID, import_module("numba.core.errors").NumbaPerformanceWarning)
     return import_module("numba.cuda")
 
 
@@ -41,7 +49,12 @@ def simulated() -> bool:
 
 
 def require_device() -> None:
-    """InputError, in one line, unless there is a device that can be used, or the simulator."""
+    """InputError, in one line, unless there is a device that can be used, or the simulator, and its stream 0 is one of
+    all threads."""
+    for name in STREAM_PER_THREAD:
+        if os.environ.get(name, "0") not in ("", "0"):
+            problem = f"{name} is set: work on the device would not wait for what it needs"
+            raise InputError(Fault("device", "gpu", problem, repair="unset it"))
     if simulated():
         return
     try:
@@ -105,28 +118,30 @@ def empty_on_device(shape: Any, dtype: Any) -> Any:
     return _within_memory(lambda: cuda().device_array(shape, dtype), size)
 
 
-def _within_memory(make: Callable[[], Any], size: int) -> Any:
-    """What ``make`` makes of ``size`` bytes on the device; InputError where its memory does not suffice."""
+def _within_memory(make: Callable[[], Any], size: int, lacking: str = "its memory does not hold") -> Any:
+    """What ``make`` makes of ``size`` bytes; InputError, with what is ``lacking``, where memory does not suffice."""
     try:
         return make()
     except Exception as error:  # the driver's own type, which the simulator does not have
         if "OUT_OF_MEMORY" not in str(error):
             raise
-        fault = Fault("device", "gpu", f"its memory does not hold {size / 2**30:.2f} GiB more")
-        raise InputError(fault) from None
+        raise InputError(Fault("device", "gpu", f"{lacking} {size / 2**30:.2f} GiB more")) from None
 
 
 Laws = type | tuple[type, ...]
 """The law, or laws, of a kernel: of each law function the body is taken for the first of them that has one."""
 
 
-@cache
-def device_kernel(function: FunctionType, law: Laws, real: type) -> Any:
+def _device_kernel(function: FunctionType, law: Laws, real: type) -> Any:
     """Compile a function of arrays and numbers whose threads take their entry by ``grid``: see ``launch``.
 
     law : of the law functions that it calls;  real : np.float32 or np.float64, of ``precision_constants``.
     """
     return cuda().jit(_for_device(function, law, real))
+
+
+device_kernel: Any = cache(_device_kernel)
+"""The same, once for each function, law and precision."""
 
 
 @cache
@@ -151,8 +166,10 @@ def new_stream() -> Any:
 
 
 def pinned_array(shape: Any, dtype: Any) -> Any:
-    """Zeros in memory of the host that the device reads and writes while the host goes on."""
-    made = cuda().pinned_array(shape, dtype)
+    """Zeros in memory of the host that the device reads and writes while the host goes on; InputError where the host
+    has no more of it."""
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    made = _within_memory(lambda: cuda().pinned_array(shape, dtype), size, "the host has no pinned memory for")
     made[...] = 0
     return made
 

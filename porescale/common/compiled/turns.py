@@ -13,8 +13,12 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-LONGEST = 120.0
-"""Seconds that a kernel is waited for.  None takes so long on a core of its own; once one did, none is waited for."""
+LONGEST = 30.0
+"""Seconds that a kernel is waited for; once one took longer, none is waited for, and what two need is compiled twice.
+
+A first Ctrl-C ends a run at the next whole block of steps, hence after the wait.  The wait does not look at it: without
+the kernel the block cannot end, and to compile it from the start would rarely end it sooner.
+"""
 LOOK_EVERY = 0.05
 SUFFIX = ".nbc.lock"
 """How the names of such files end: as kernels, they are removed when nothing has used them for long."""
@@ -25,7 +29,7 @@ class Turns:
     """The kernel that this process compiles.
 
     count : kernels compiled so far, this one included;  name : its name, "" for none;  seconds : that they took, waits
-    included;  kept : where they are kept;  first : called before the first
+    included;  kept : where they are kept, those that are;  first : called before the first
     one, as `when_first` says;  writing : held while a file of a kernel is written.
     """
 
@@ -42,12 +46,18 @@ class Turns:
     _began: float = 0.0
 
     def take(self, name: str, path: Path) -> bool:
-        """Begin with a kernel that is kept at ``path`` without suffix; True where another process was waited for."""
+        """Begin with a kernel that is kept at ``path`` without suffix; True where another process was waited for.
+
+        A path that ends in no more than the name of the function is that of a kernel without a key: it is not kept, so
+        that nothing is gained by waiting.
+        """
         self.end()
         self.count, self.name, self._began = self.count + 1, name, self.clock()
-        self.kept.append(path.name)
         while self.first:
             self.first.pop()()
+        if path.name == name:
+            return False
+        self.kept.append(path.name)
         from filelock import FileLock, Timeout
 
         lock = FileLock(path.with_name(path.name + SUFFIX))
@@ -70,11 +80,12 @@ class Turns:
         """The kernel is made, or was not to be made."""
         if self.name:
             self.name, self.seconds = "", self.seconds + self.clock() - self._began
-        if self._lock is not None:
-            lock, self._lock = self._lock, None
+        lock, self._lock = self._lock, None
+        if lock is not None:  # the file first: once released it may be another's
+            with suppress(OSError):  # Windows removes no open file; the release does it there
+                Path(lock.lock_file).unlink(missing_ok=True)
             with suppress(OSError):
                 lock.release()
-                Path(lock.lock_file).unlink(missing_ok=True)
 
 
 TURNS = Turns()

@@ -14,10 +14,32 @@ LEVEL = 0.95
 """Share of intervals that hold the true mean."""
 LEAST = 3
 """Values without which there is no interval: that of two is 12.7 standard errors wide each way, and says nothing."""
+EPS = float(np.finfo(float).eps)
+"""Twice what an operation rounds by at most, as a share."""
 RESAMPLES = 9999
 """Of a bootstrap: its ends scatter by about a hundredth of the interval."""
 REACH = 5.0
 """Correlation times over which correlations are summed (Sokal 1997, Monte Carlo methods in statistical mechanics)."""
+
+
+def equal(values: Sequence[float] | Floats) -> bool:
+    """Whether ``values`` (n,), n >= 1, differ by rounding alone: by 4 eps of the largest.
+
+    An operation rounds by at most eps/2 of its result: what four of them make of the same number lies within 2 eps of
+    it, and two such lie within 4 eps of each other.
+    """
+    least, most = float(np.min(values)), float(np.max(values))
+    return math.isfinite(most - least) and most - least <= 4.0 * EPS * max(abs(least), abs(most))
+
+
+def deviation(values: Sequence[float] | Floats) -> float:
+    """Standard deviation of a single one of ``values`` (n,), n - 1; 0 of equal ones, nan below two.
+
+    The mean of equal values is itself rounded, and so none of them: three times 0.1 would have 1.7e-17.
+    """
+    if len(values) < 2:
+        return math.nan
+    return 0.0 if equal(values) else float(np.std(values, ddof=1))
 
 
 def student(count: float, level: float = LEVEL) -> float:
@@ -32,7 +54,7 @@ def half_width(values: Sequence[float] | Floats, level: float = LEVEL) -> float:
     count = len(values)
     if count < LEAST:
         return math.nan
-    return student(count, level) * float(np.std(values, ddof=1)) / math.sqrt(count)
+    return student(count, level) * deviation(values) / math.sqrt(count)
 
 
 def independent(values: Floats) -> float:
@@ -56,8 +78,8 @@ def independent(values: Floats) -> float:
 
 def needed(values: Sequence[float], width: float) -> float:
     """How many values of this deviation have an interval of ``width`` on each side; inf beyond a million."""
-    deviation, count = float(np.std(values, ddof=1)), LEAST
-    while student(count) * deviation > width * math.sqrt(count):
+    spread, count = deviation(values), LEAST
+    while student(count) * spread > width * math.sqrt(count):
         count = max(count + 1, round(1.02 * count))
         if count > 1e6:
             return math.inf
@@ -75,7 +97,7 @@ def bootstrap(values: tuple[float, ...], level: float = LEVEL, resamples: int = 
     if len(values) < LEAST:
         return math.nan, math.nan
     drawn = np.sort(np.asarray(values, float))
-    if drawn[0] == drawn[-1]:
+    if equal(drawn):
         return float(drawn[0]), float(drawn[0])
     from scipy import stats
 
@@ -93,13 +115,15 @@ class Sample:
 
     @property
     def mean(self) -> float:
-        """Mean of the values; nan where there are none."""
-        return float(np.mean(self.values)) if self.values else math.nan
+        """Mean of the values, of equal ones the smallest; nan where there are none."""
+        if not self.values:
+            return math.nan
+        return float(min(self.values) if equal(self.values) else np.mean(self.values))
 
     @property
     def deviation(self) -> float:
         """Standard deviation of a single value (n - 1); nan below two."""
-        return float(np.std(self.values, ddof=1)) if len(self.values) > 1 else math.nan
+        return deviation(self.values)
 
     @property
     def error(self) -> float:

@@ -35,8 +35,7 @@ class DeviceCopy:
         self.values = self.nine.reshape((1, STREAMS * n))
         self.one = kind.type(1)
         self.bytes = 2 * STREAMS * n * kind.itemsize
-        kernel_of: Any = device_kernel
-        self._kernel = kernel_of(flip_there, object, kind.type)
+        self._kernel = device_kernel(flip_there, object, kind.type)
 
     def __call__(self) -> None:
         """Go over the memory once in each form."""

@@ -14,8 +14,8 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
 
-LEAST = 0.5
-"""MiB: the scripts and texts take a part of it."""
+LEAST, MOST = 0.5, 5.0
+"""MiB of a page: the scripts and texts take a part of it; and what it stays below if nothing is said."""
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -26,7 +26,9 @@ def command(package: Package) -> Callable[..., int]:
         /,
         *against: Annotated[Path, Parameter(help="further runs in the same box, to compare with")],
         out: Annotated[Path | None, Parameter(help="file; report.html in the run folder if not given")] = None,
-        size: Annotated[float, Parameter(help="MiB to stay below, by coarser cells and fewer frames")] = 5.0,
+        size: Annotated[
+            float | None, Parameter(help=f"MiB to stay below, by coarser cells and fewer frames; {MOST:g} if not given")
+        ] = None,
         full: Annotated[bool, Parameter(help="float32 of every cell and snapshot, however large")] = False,
     ) -> int:
         """Write a page of a run or sweep, finished or not, that a browser shows without a network."""
@@ -35,14 +37,17 @@ def command(package: Package) -> Callable[..., int]:
 
         folders = [run, *against]
         if not against and is_sweep(run):
+            given = {"--size": size} if size is not None else {}
+            refuse(given | ({"--full": None} if full else {}))
             print(_of_sweep(package, run, out))
             return 0
         for folder in folders:
             require_own(package, folder)
-        if not size >= LEAST:
+        most = MOST if size is None else size
+        if not most >= LEAST:
             raise InputError(Fault("--size", size, "is out of range", "MiB", f">= {LEAST}"))
         require_file(run, out)
-        print(write([open_run(folder, package) for folder in folders], out, full=full, mebibytes=size))
+        print(write([open_run(folder, package) for folder in folders], out, full=full, mebibytes=most))
         return 0
 
     return report
@@ -53,10 +58,18 @@ def is_sweep(folder: Path) -> bool:
     return not (folder / CARD).exists() and folder.is_dir() and any(folder.glob(f"[!.]*/{CARD}"))
 
 
+def refuse(given: dict[str, float | None]) -> None:
+    """InputError where options of the page of a run are ``given`` with a sweep."""
+    problem, repair = "is not for the page of a sweep", "leave it out, or name one of its runs"
+    if given:
+        raise InputError([Fault(key, value, problem, repair=repair) for key, value in given.items()])
+
+
 def _of_sweep(package: Package, folder: Path, out: Path | None) -> Path:
-    """Write the page of a sweep."""
+    """Write the page of a sweep, whose first run tells of which package it is."""
     from porescale.common.watch.sweep_report import write_sweep_report
 
+    require_own(package, min(folder.glob(f"[!.]*/{CARD}")).parent)
     require_file(folder, out)
     return write_sweep_report(folder, package, out)
 

@@ -87,13 +87,14 @@ class Watch:
             self.console.print(Text(text), highlight=False, soft_wrap=True)
 
     def left(self) -> float | None:
-        """Seconds left, all that follows the steps included; None while unknown.
+        """Seconds left, all that follows the steps included; None while unknown, and once that lasts too long.
 
         Steps are expected to go on at their mean speed, rows, snapshots and checkpoints included, since kernels were
         compiled; time in which the process was stopped does not count.
         """
         if self.finishing_since is not None:
-            return max(0.0, self.finish - (clock.perf_counter() - self.finishing_since)) if self.finish else None
+            left = self.finish - (clock.perf_counter() - self.finishing_since)
+            return left if left > 0.0 else None
         if self.running_since is None or self.time <= self.start:
             return None
         spent = clock.perf_counter() - self.running_since - self.stopped

@@ -75,7 +75,8 @@ class Repeats:
             problem = "repeats the same run: the scene draws nothing at random"
             repair = f"name a key that differs between repeats, {over} section.key=a,b,c"
             raise InputError(Fault(count, self.count, problem, repair=repair))
-        return [tuple(f"{it}={number + k}" for it, number in first.items()) for k in range(self.count)]
+        step = max(first.values()) - min(first.values()) + 1  # several seeds: no repeat draws with another's
+        return [tuple(f"{it}={number + k * step}" for it, number in first.items()) for k in range(self.count)]
 
     def _whole(self, scene: Any, key: str) -> int:
         """The whole number at ``key`` of a scene; InputError where there is something else."""
@@ -186,7 +187,8 @@ class Judged:
 
     sample : its finite values;  absent : finished runs without a number;  never : those that never come to what the row
     asks for (an infinite time);  verdict : "" where the row has no band, or PASS, FAIL, OPEN;  inside : runs within
-    the band;  needed : repeats that would resolve the mean if it stays where it is, None where nothing tells.
+    the band;  needed : repeats that would resolve the mean if it stays where it is, None where
+    nothing tells, or where a run has no number: more runs do not bring it.
     """
 
     sample: Sample
@@ -215,7 +217,7 @@ def judged(values: Sequence[float], complete: bool, row: Mapping[str, Any]) -> J
             return Judged(sample, absent, never, PASS, inside)
         if off - half > tolerance:
             return Judged(sample, absent, never, FAIL, inside)
-    some = len(sample.values) > 1
+    some = len(sample.values) > 1 and len(sample.values) == len(values)  # no repeat brings a missing number
     return Judged(sample, absent, never, OPEN, inside, needed(sample.values, abs(off - tolerance)) if some else None)
 
 

@@ -170,7 +170,7 @@ def printed(lines: Sequence[Line]) -> list[str]:
 
 
 def failed(lines: Sequence[Line]) -> bool:
-    """Whether a row fails for the scene as it is: in an ensemble that sets nothing but what its repeats differ in."""
-    return any(
-        line.judged is not None and line.judged.verdict == FAIL and not line.ensemble.of.settings for line in lines
-    )
+    """Whether a row fails for the scene as it is, at its own level: in an ensemble that sets nothing but what its
+    repeats differ in."""
+    own = [line for line in lines if not line.ensemble.of.settings and not line.ensemble.of.quality]
+    return any(line.judged is not None and line.judged.verdict == FAIL for line in own)

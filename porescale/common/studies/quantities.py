@@ -96,18 +96,24 @@ LATE: dict[str, Callable[[NDArray[Any], NDArray[Any]], float]] = {
 
 
 def wrong(row: Mapping[str, Any]) -> str:
-    """Fault in where a row says to read, "" if there is none; a table may still lack its columns."""
+    """Fault in what a row says to read and to expect, "" if there is none; a table may still lack its columns."""
     for key in ("name", "column", "minus", "unit", "file"):
         if not isinstance(row.get(key, ""), str):
             return f"{key} is not text"
     if not isinstance(row.get("where", {}), Mapping):
         return "where is not a table"
+    for key in ("value", "tolerance"):
+        if key in row and not _is_number(row[key]):
+            return f"{key} is not a number"
+    if row.get("tolerance", 0) < 0:
+        return "tolerance is below 0"
     at = row["at"]
     if isinstance(at, str):
         return "" if at in WHERE else f"at is not one of {', '.join(WHERE)}, a time or a table"
     if not isinstance(at, Mapping):
         return "" if _is_number(at) else "at is not a time"
-    falls, known = ("first_below", "last_above"), (*LATE, "quantile", "first_below", "last_above")
+    falls = ("first_below", "first_above", "last_above")
+    known = (*LATE, "quantile", *falls)
     chosen = [key for key in at if key != "share_of"]
     if len(chosen) != 1 or chosen[0] not in known:
         return f"at has not one of {', '.join(known)}"

@@ -123,7 +123,8 @@ class Site:
         return self._sweep(parts) if kind == SWEEP else None
 
     def _sweep(self, parts: Sequence[str]) -> Answer | None:
-        """``points``, ``picture/NAME``, ``ensembles``, ``band/NAME``; pages and data of each run, ``run/NAME/…``."""
+        """``points``, ``picture/NAME``, ``ensembles``, ``band/NAME`` (null where there is none); pages and data of each
+        run, ``run/NAME/…``."""
         if self._points is None:
             self._points = Points(self.folder, self.program)
         match list(parts):
@@ -132,8 +133,7 @@ class Site:
             case ["ensembles"]:
                 return _json(self._points.ensembles())
             case ["band", name]:
-                found = self._points.band(name)
-                return None if found is None else _json(found)
+                return _json(self._points.band(name))
             case ["picture", name]:
                 content = self._points.picture(name)
                 return None if content is None else Answer(content, "image/png")

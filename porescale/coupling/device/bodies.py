@@ -14,15 +14,23 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
-from porescale.common.compiled.cuda import empty_on_device, launch, new_stream, pinned_array, to_device
+from porescale.common.compiled.cuda import (
+    device_kernel,
+    empty_on_device,
+    launch,
+    new_stream,
+    pinned_array,
+    to_device,
+)
 from porescale.common.core.types import Integers, Reals
-from porescale.coupling.coverage.rows import BLOCK, Motion, Patches
-from porescale.coupling.coverage.soft_rim import SoftRim
+from porescale.coupling.coverage.rows import BLOCK, Motion, Patches, whole_blocks
+from porescale.coupling.coverage.soft_rim import MARGIN, SoftRim
 from porescale.coupling.device import cover, loads, sweeps
 from porescale.coupling.device.layout import Box, DevicePatches, Owners, Tiles
 from porescale.coupling.device.tiles import TILE_HEIGHT, TILE_WIDTH, TileLists, list_tiles, most_entries, tiles_of
-from porescale.lbm.device.fluid import kernel_of
 from porescale.lbm.fluid import Fluid
 
 THREADS = 128
@@ -108,6 +116,8 @@ class DeviceBodies:
 
         ``patches`` has the corners of all bodies, and all else of those that are no discs;  radius: of the discs.
         """
+        # Copies here do not overwrite what the last step's sweep of the other tiles reads: they wait for the launch in
+        # the stream 0 that ends ``DeviceFluid.advance``, and that one waits for the sweep.
         for there, here in zip(self._up.here, motion, strict=False):
             there[...] = here
         if moved:
@@ -199,24 +209,31 @@ class DeviceBodies:
 
     def _kernel(self, function: Any) -> Any:
         """A kernel for the laws and the precision in use."""
-        return kernel_of(function, tuple(type(it) for it in (self._law, *self.laws[::-1])), self._real)
+        return device_kernel(function, tuple(type(it) for it in (self._law, *self.laws[::-1])), self._real)
 
     def _run(self, function: Any, count: int, *arguments: Any) -> None:
         """Run a kernel that knows no law of the fluid with ``count`` threads."""
         laws = tuple(type(it) for it in self.laws[::-1])
-        launch(kernel_of(function, laws, self._real), count, THREADS, *arguments)
+        launch(device_kernel(function, laws, self._real), count, THREADS, *arguments)
 
 
-def bytes_needed(nx: int, ny: int, real_bytes: int, count: int, across: int) -> int:
-    """Device memory of ``count`` discs that are ``across`` cells wide at the most, beside that of the fluid.
+def bytes_needed(nx: int, ny: int, real_bytes: int, rows: Integers, polygons: int = 0, *, soft: bool = False) -> int:
+    """Device memory of bodies, beside that of the fluid; pairs of clumps are not counted.
 
-    Of every cell what loads are made of, of every tile its place in the lists, of every disc its patch with the motion
-    of its blocks, its grid lines, rows and loads, and its places in the lists of nine tiles.
+    rows (n,): of the patch of every body, without what soft rims add;  polygons: how many, the last ones.
+
+    Of every cell what loads are made of, of every tile its place in the lists, of every body its patch with the motion
+    of its blocks, its rows, loads and places in lists, of a disc its grid lines.
     """
     wide, high = tiles_of(nx, ny)
-    stride = -(-(across + 3) // BLOCK) * BLOCK
-    patch = stride * (across + 2) * real_bytes * (1 + 8 / BLOCK) + 48 * stride + 40 * (across + 2)
-    return 3 * nx * ny * real_bytes + 8 * (wide * high + ny) + int(count * (patch + 8 * (SENT + 6 + 4) + 4 * 9))
+    height = np.asarray(rows, np.int64) + MARGIN * soft
+    stride, discs = whole_blocks(height + 1), len(rows) - polygons
+    cells = height * stride
+    patches = int(cells.sum()) * (real_bytes * (1 + 8 / BLOCK) + 4 / BLOCK) + int(cells[discs:].sum()) * real_bytes
+    lines = int(stride[:discs].sum()) * (48 + 4 / BLOCK)
+    loads = 4 * int(height.sum()) + 8 * (7 if soft else 5) * len(rows) * int(height.max(initial=0))
+    bodies = 8 * (SENT + 8 + 7) * len(rows) + 4 * most_entries(height, stride, nx, ny)  # 8 come back, 7 say where
+    return int((3 + soft) * nx * ny * real_bytes + 8 * (wide * high + ny + 1) + patches + lines + loads + bodies)
 
 
 def _repeated(counts: Any) -> Any:
@@ -226,11 +243,13 @@ def _repeated(counts: Any) -> Any:
 
 
 def grouped(pairs: Integers, discs: int) -> tuple[Integers, Integers]:
-    """Pairs (p, 2) in groups that share no disc, in their order within each, and where each group begins, (g + 1,)."""
-    group = np.arange(discs)
-    for n, m in pairs:
-        group[group == group[m]] = group[n]
-    own = group[pairs[:, 0]] if len(pairs) else np.zeros(0, np.int64)
+    """Pairs (p, 2) in groups that share no disc, in their order within each, and where each group begins, (g + 1,).
+
+    The order of groups does not matter: a pair reads and writes patches of its own discs alone.
+    """
+    joined = coo_array((np.ones(len(pairs), np.int8), pairs.T), shape=(discs, discs))
+    group = connected_components(joined, directed=False)[1]
+    own = group[pairs[:, 0]]
     order = np.argsort(own, kind="stable")
     begin = np.flatnonzero(np.diff(own[order], prepend=-1))
     return np.ascontiguousarray(pairs[order]), np.append(begin, len(pairs)).astype(np.int64)

@@ -8,13 +8,12 @@ first and is the CPU's code, so a checkpoint holds nothing of a device and goes 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.cuda import device_kernel, launch, require_device, to_device
+from porescale.common.compiled.cuda import device_kernel, launch, require_device, synchronize, to_device
 from porescale.lbm.boundary.pressure import OpenLinks
 from porescale.lbm.boundary.thin_plate import Plate
 from porescale.lbm.device.kernels import exchange_links, let_in_links, pass_on_links, sweep_cells
@@ -26,8 +25,6 @@ from porescale.lbm.totals import Totals
 
 CELLS_IN_BLOCK, LINKS_IN_BLOCK = 256, 64
 """Threads of a block: whole warps, as the devices' maker recommends; not tuned, since no device was at hand."""
-
-kernel_of: Any = cache(device_kernel)
 
 
 @dataclass(frozen=True)
@@ -80,6 +77,10 @@ class DeviceFluid(Fluid):
         if not self._sent:
             self._there.copy_to_device(self.padded)
             self._sent = True
+
+    def wait(self) -> None:
+        """Wait until the device has done the steps that it was given."""
+        synchronize()
 
     def fetch(self) -> None:
         """Bring the CPU's populations up to date."""
@@ -151,7 +152,7 @@ class DeviceFluid(Fluid):
 
     def _kernel(self, function: Any) -> Any:
         """A kernel for the law and precision of this fluid."""
-        return kernel_of(function, type(self.law_of_sweep), self.populations.dtype.type)
+        return device_kernel(function, type(self.law_of_sweep), self.populations.dtype.type)
 
     @contextmanager
     def readable(self) -> Iterator[None]:

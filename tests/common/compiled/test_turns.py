@@ -1,8 +1,11 @@
 """One process compiles a kernel, others wait for it; the second process is there when needed, and leaves nothing."""
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
+import psutil
 import pytest
 from filelock import FileLock
 
@@ -11,6 +14,7 @@ from porescale.common.compiled.turns import LONGEST, SUFFIX, Turns
 from tests.reference.waiting import awaited
 
 CHILD = "tests.reference.second_process"
+ROOT = Path(__file__).resolve().parents[3]
 
 
 def test_what_another_compiles_is_waited_for(tmp_path):
@@ -63,6 +67,27 @@ def test_seconds_of_compiling_are_counted_with_the_waits(tmp_path):
     assert mine.seconds == 7.0
 
 
+def test_a_kernel_without_a_key_is_neither_noted_nor_waited_for(tmp_path):
+    mine = Turns(sleep=lambda _: pytest.fail("waits for what is not kept"))
+    with FileLock(tmp_path / f"kernel{SUFFIX}"):  # another process compiles one of that name
+        assert not mine.take("kernel", tmp_path / "kernel")
+        mine.end()
+    mine.take("kernel", tmp_path / "module.kernel-key")  # the twin: it has one
+    mine.end()
+    assert (mine.count, mine.kept) == (2, ["module.kernel-key"])
+
+
+def test_the_file_is_gone_before_the_lock_is_released(tmp_path, monkeypatch):
+    mine, file, found = Turns(), tmp_path / f"key{SUFFIX}", []
+    mine.take("kernel", tmp_path / "key")
+    release = mine._lock.release
+    monkeypatch.setattr(mine._lock, "release", lambda: (found.append(file.exists()), release()))
+    assert file.exists()
+    mine.end()
+    assert found == [os.name == "nt"]  # Windows removes no open file
+    assert not file.exists()
+
+
 def test_a_folder_without_locks_is_done_without(tmp_path):
     (tmp_path / "file").write_text("no folder")
     mine = Turns()
@@ -85,6 +110,12 @@ def test_the_first_kernel_starts_what_waits_for_it_once(tmp_path):
         mine.take(name, tmp_path / name)
         mine.end()
     assert begun == [1]
+
+
+@pytest.fixture(autouse=True)
+def path_of_the_tests(monkeypatch):
+    """Modules of the tests are found by second processes from any folder."""
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
 
 
 @pytest.fixture
@@ -125,6 +156,95 @@ def test_none_is_started_where_it_is_not_wanted(process):
     assert not file.exists()
 
 
+@pytest.fixture
+def module(tmp_path, monkeypatch):
+    """Makes a module of code, which second processes find by its name; returns the name."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), str(tmp_path / "modules")]))
+    (tmp_path / "modules").mkdir()
+
+    def made(code):
+        (tmp_path / "modules" / "made_here.py").write_text(code)
+        return "made_here"
+
+    return made
+
+
+DEAF = """import os, time
+from porescale.common.core.atomic import write_text
+from pathlib import Path
+write_text(Path({file!r}), str(os.getpid()))
+time.sleep(600)
+"""
+LENGTH = """from porescale.common.compiled.ahead import serve
+from porescale.common.core.atomic import write_text
+from pathlib import Path
+serve(lambda given: write_text(Path(given[0]), str(len(given[1]))))
+"""
+COMPILES = """import time
+from pathlib import Path
+from porescale.common.compiled.ahead import serve
+from porescale.common.compiled.turns import TURNS
+serve(lambda folder: (TURNS.take("kernel", Path(folder) / "key"), time.sleep(600)))
+"""
+
+
+def test_one_that_never_reads_holds_up_nobody(process, module, monkeypatch):
+    mine, file = process
+    monkeypatch.setattr(ahead, "PATIENCE", 600.0)  # it is not waited for
+    with ahead.ahead(module(DEAF.format(file=str(file))), lambda: "x" * 2**20):  # a pipe holds 2^16 bytes
+        mine.take("kernel", file.parent / "key")
+        mine.end()
+        number = int(awaited(lambda: file.exists() and file.read_text()))
+        assert alive(number)
+    assert not psutil.pid_exists(number)  # nor is a zombie left
+
+
+def test_one_that_reads_gets_all_of_a_long_text(process, module):  # the twin
+    _, file = process
+    (second,) = ahead._start(module(LENGTH), [str(file), "x" * 2**20])
+    assert int(awaited(lambda: file.exists() and file.read_text())) == 2**20
+    ahead._end(*second)
+
+
+def test_one_that_ends_before_it_reads_leaves_no_zombie():
+    (second,) = ahead._start("no_such_module", "x" * 2**20)
+    ahead._end(*second)
+    assert second[0].returncode
+    assert not psutil.pid_exists(second[0].pid)
+
+
+def test_files_of_the_working_folder_are_no_modules_of_it(process, monkeypatch):
+    mine, file = process
+    folder = file.parent / "scenes"
+    folder.mkdir()
+    (folder / "json.py").write_text("open('executed', 'w').close()\n")
+    monkeypatch.chdir(folder)
+    with ahead.ahead(CHILD, lambda: str(file)):
+        mine.take("kernel", file.parent / "key")
+        mine.end()
+        awaited(lambda: file.exists() and file.read_text())
+    assert not (folder / "executed").exists()
+    subprocess.run([sys.executable, "-m", "json"], check=False)  # the check that must fail
+    assert (folder / "executed").exists()
+
+
+@pytest.mark.parametrize(("folder", "own"), [("site-packages", False), ("source", True)])
+def test_installed_packages_do_not_come_before_the_standard_library(tmp_path, monkeypatch, folder, own):
+    root = tmp_path.resolve() / folder
+    monkeypatch.setattr(ahead, "__file__", str(root / "porescale" / "common" / "compiled" / "ahead.py"))
+    monkeypatch.setenv("PYTHONPATH", "given")
+    assert ahead._paths().split(os.pathsep) == [str(root)] * own + ["given"]
+
+
+def test_one_that_is_ended_while_it_compiles_leaves_no_lock(process, module):
+    mine, file = process
+    with ahead.ahead(module(COMPILES), lambda: str(file.parent)):
+        mine.take("kernel", file.parent / "kernel")
+        mine.end()
+        awaited(lambda: (file.parent / f"key{SUFFIX}").exists())
+    assert list(file.parent.glob(f"*{SUFFIX}")) == []
+
+
 def test_it_ends_when_the_first_is_killed(tmp_path):
     file, quiet = tmp_path / "number", subprocess.DEVNULL
     code = (
@@ -143,6 +263,4 @@ def test_it_ends_when_the_first_is_killed(tmp_path):
 
 def alive(number: int) -> bool:
     """Whether a process runs, zombies left out."""
-    import psutil
-
     return psutil.pid_exists(number) and psutil.Process(number).status() != psutil.STATUS_ZOMBIE

@@ -22,7 +22,7 @@ def test_a_run_leaves_its_page_with_its_pictures_unless_it_shall_not(monkeypatch
     monkeypatch.setattr(name, lambda *_, after, **more: ends.append(after) or done)
     output, time = SimpleNamespace(report=wanted, snapshot_interval=1.0), SimpleNamespace(end=1.0)
     scene = SimpleNamespace(grains=None, polygon=(), run=None, time=time, output=output)
-    model = SimpleNamespace(derived=SimpleNamespace(model_step=1.0), built_in=0.0)
+    model = SimpleNamespace(derived=SimpleNamespace(model_step=1.0), built_in=0.0, compiled_before=(0, 0.0))
     program.drive(model, tmp_path, scene, card={}, resume=False, quiet=True)
     ends[0](tmp_path)
     assert pages == ([tmp_path] if wanted and pictures else [])

@@ -144,6 +144,19 @@ def test_time_left_is_right_within_a_tenth_from_a_tenth_of_the_run_on(monkeypatc
     assert without is None
 
 
+def test_what_takes_longer_than_expected_after_the_steps_is_not_said_to_be_over(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
+    watch = Watch("dam", 0.0, 3.0, quiet=True, finish=8.0)
+    watch.enter("writing pictures and film")
+    now[0] = 7.0
+    assert watch.line().endswith(", 1 s left")  # the twin
+    now[0] = 8.0
+    assert watch.left() is None
+    now[0] = 100.0
+    assert not watch.line().endswith(" left")
+
+
 def worst(watch, now, ends, finish):
     """Largest relative error of the time left from a tenth of a run on, and what is said of it half-way through what
     follows the steps."""

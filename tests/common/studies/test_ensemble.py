@@ -3,16 +3,18 @@
 import csv
 import json
 import math
+from dataclasses import replace
 from itertools import permutations
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from porescale.common.cli.sweep import chosen_points, conclude
 from porescale.common.core.errors import InputError
-from porescale.common.core.statistics import Sample, bootstrap, half_width, student
+from porescale.common.core.statistics import Sample, bootstrap, equal, half_width, student
 from porescale.common.studies import ensemble_files, sweep_files
 from porescale.common.studies.ensemble import FAIL, OPEN, PASS, Repeats, ensembles, judged, repeated
 from porescale.common.studies.ensemble_picture import band
@@ -20,9 +22,10 @@ from porescale.common.studies.parameter_table import Point, read_points, varied
 from porescale.common.studies.runner import Campaign, Ended
 from porescale.common.studies.schedulers.local import Local
 from porescale.common.studies.schedulers.task import Process
-from porescale.common.studies.sweep import run_points
+from porescale.common.studies.sweep import expected, run_points
 from tests.reference.toy_package import TOY
 
+CASES = Path(__file__).resolve().parents[3] / "cases"
 SCENE = "[decay]\nrate = 3\n[noise]\nseed = 5\n[quality.fine.decay]\nstart = 2\n"
 AT_END = {"name": "left", "column": "left (m)", "at": "end", "unit": "m", "value": 0.06, "tolerance": 0.05}
 
@@ -77,6 +80,45 @@ def test_repeats_count_on_from_the_seed_of_the_scene(scene):
     points = repeats(scene, 3)
     assert [point.settings for point in points] == [("noise.seed=5",), ("noise.seed=6",), ("noise.seed=7",)]
     assert [point.name for point in points] == ["seed=5", "seed=6", "seed=7"]
+
+
+def test_several_seeds_are_counted_up_so_that_no_repeat_draws_with_another_ones(scene):
+    def keys(**seeds):
+        return [dict(it.split("=") for it in one) for one in Repeats(4).choices(program(seeds), None)]
+
+    def program(seeds):
+        return replace(TOY, seeds=lambda scene: seeds)
+
+    assert keys(a=1, b=2) == [{"a": f"{1 + 2 * k}", "b": f"{2 + 2 * k}"} for k in range(4)]
+    drawn = [seed for one in keys(a=7, b=3, c=4) for seed in one.values()]
+    assert len(set(drawn)) == len(drawn)
+    assert keys(a=5, b=5) == [{"a": f"{5 + k}", "b": f"{5 + k}"} for k in range(4)]  # alike in the scene: alike in all
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ('value = "0.2 m"\ntolerance = 0.1', "value is not a number"),
+        ("value = nan\ntolerance = 0.1", "value is not a number"),
+        ("value = 0.2\ntolerance = true", "tolerance is not a number"),
+        ("value = 0.2\ntolerance = inf", "tolerance is not a number"),
+        ("value = 0.2\ntolerance = -0.1", "tolerance is below 0"),
+    ],
+)
+def test_what_a_row_expects_is_refused_in_one_line_before_anything_runs(toy, scene, words, said):
+    row = f'[[expected]]\nname = "left"\ncolumn = "left (m)"\nat = "end"\n{words}\n'
+    (scene.parent / "expected.toml").write_text(row)
+    code, _, lines = toy("sweep", "scene.toml", "--repeat", "4")
+    assert code == 2
+    (line,) = lines
+    assert said in line
+    assert "left" in line
+    assert not (scene.parent / "runs").exists()
+
+
+@pytest.mark.parametrize("case", sorted(path.parent.name for path in CASES.glob("*/expected.toml")))
+def test_a_sweep_reads_what_every_case_expects(case):
+    assert expected(CASES / case / "scene.toml") is not None
 
 
 def test_every_combination_is_repeated_on_the_same_seeds_and_named_as_if_they_were_varied(scene):
@@ -196,6 +238,10 @@ def test_the_command_ends_with_one_where_a_row_fails_for_the_scene_as_it_is(toy,
     code, out, _ = toy("sweep", "scene.toml", "--repeat", "4")
     assert code == 1
     assert "fail: left (m)" in out
+    (scene.parent / "levels.csv").write_text("name,quality\nfiner,fine\n")
+    for words in (["--quality", "fine"], ["levels.csv"], ["--set", "decay.rate=3"]):
+        code, out, _ = toy("sweep", "scene.toml", *words, "--repeat", "4", "--out", f"runs/{words[-1]}")
+        assert (code, "fail: " in out) == (0, True)  # shown: the rows are meant for the level of the scene itself
     code, out, _ = toy("sweep", "scene.toml", "--vary", "decay.rate=1,2", "--repeat", "3", "--out", "varied")
     assert code == 0  # shown, and not meant for other values
     assert "fail: rate=2, left (m)" in out
@@ -214,7 +260,9 @@ def test_a_row_passes_or_fails_only_where_the_whole_interval_does(value, toleran
     assert found.verdict == verdict
     assert (found.needed is None) == (verdict != OPEN)
     assert judged(values, False, {"value": value, "tolerance": tolerance}).verdict == OPEN  # some did not finish
-    assert judged([*values, math.nan], True, {"value": value, "tolerance": tolerance}).verdict == OPEN
+    for lost in (math.nan, math.inf):
+        missing = judged([*values, lost], True, {"value": value, "tolerance": tolerance})
+        assert (missing.verdict, missing.needed) == (OPEN, None)  # no number of repeats brings it
 
 
 def test_what_some_never_come_to_is_open_and_what_all_never_come_to_fails():
@@ -237,14 +285,35 @@ def test_verdicts_are_wrong_no_more_often_than_the_interval_allows():
     assert np.mean(bare) > 0.4  # the check that must fail: a mean without its interval passes half of them
 
 
-def test_as_many_repeats_as_are_said_to_be_needed_resolve_a_row():
-    values = list(np.random.default_rng(5).normal(1.0, 0.1, 6))
-    open_row = {"value": 1.0, "tolerance": 0.08}
-    found = judged(values, True, open_row)
+@pytest.mark.parametrize("room", [0.05, 0.03, 0.004])
+def test_as_many_repeats_as_are_said_to_be_needed_resolve_a_row_and_two_percent_fewer_do_not(room):
+    values = np.random.default_rng(5).normal(1.0, 0.1, 6)
+    mean, error = values.mean(), stats.sem(values)
+    found = judged(list(values), True, {"value": mean, "tolerance": room})
     assert found.verdict == OPEN
-    spread = Sample(tuple(values))
-    half = student(found.needed) * spread.deviation / math.sqrt(found.needed)
-    assert abs(spread.mean - 1.0) + half <= 0.08
+    assert found.needed > len(values)
+
+    def resolved(count):
+        """Whether the interval of as many values with this mean and deviation lies within the band."""
+        low, high = stats.t.interval(0.95, count - 1, mean, error * math.sqrt(len(values) / count))
+        return mean - room <= low and high <= mean + room
+
+    assert resolved(found.needed)
+    # counts are tried 2 % apart, rounded: the one before is at most this much below, and at least one
+    assert not resolved(min(found.needed - 1, math.floor((found.needed - 0.5) / 1.02)))
+
+
+def test_values_that_are_equal_but_for_rounding_have_no_deviation_and_pass_without_room():
+    third = 0.1 * 3 / 3
+    assert third != 0.1
+    for values in ([0.1] * 3, [third, 0.1, 0.1], [-1e9] * 7):
+        sample = Sample(tuple(values))
+        assert (sample.mean, sample.deviation, sample.half) == (min(values), 0.0, 0.0)
+        assert judged(values, True, {"value": min(values), "tolerance": 0.0}).verdict == PASS
+        assert bootstrap(tuple(values)) == (min(values), min(values))
+    assert Sample((0.1, 0.1, 0.1 * (1 + 1e-14))).deviation > 0.0  # 45 eps apart: no rounding
+    assert not equal([1.0, math.inf])
+    assert not equal([1.0, math.nan])
 
 
 COVERED = {  # of normal and of exponential values, in shares of draws whose interval holds the mean: Student, bootstrap

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from porescale.common.cli.application import application, main
 from porescale.common.core.statistics import half_width
 from porescale.common.studies import sweep_files
 from porescale.common.studies.ensemble import Repeats
@@ -63,7 +64,8 @@ def test_what_is_known_of_ensembles_is_told_while_they_run(swept):
         ends = [Points(swept, PROGRAM).run(name).run().series[ENERGY][-1] for name in other["finished"]]
         assert band["data"][column][-1] == pytest.approx(np.mean(ends), rel=1e-6)
         assert band["half"][column][-1] == pytest.approx(half_width(ends), rel=1e-6)
-        assert asked(server, "band/rate%3D3")[0] == 404
+        assert told(server, "band/rate%3D3") is None
+        assert asked(server, "bands/rate%3D3")[0] == 404
 
 
 def test_members_are_none_but_the_runs_in_the_folder(swept, tmp_path):
@@ -87,6 +89,38 @@ def test_the_page_shows_means_with_bands_and_members_thin(page, heard, swept):
         assert last.outcome == "finished"
         shows(page, "document.querySelector('#ensembles li').textContent === 'rate=1: 4 of 4 finished'")
     assert not heard.errors
+
+
+def test_the_page_of_ensembles_without_a_band_still_has_its_table(page, heard, swept, monkeypatch):
+    from porescale.common.watch import sweep
+
+    monkeypatch.setattr(sweep, "band", lambda curves: None)  # as of members whose rows are no curves over time
+    with watched(page, swept) as server:
+        assert told(server, "band/rate%3D2") is None
+        page.goto(server.link)
+        page.wait_for_selector("#points tbody tr", timeout=SOON)
+        page.wait_for_selector("#ensembles li", timeout=SOON)
+        assert page.locator("path.band").count() == 0
+    assert not heard.errors
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["--size", "3"], ["--size = 3.0"]), (["--full"], ["--full"]), (["--full", "--size", "3"], ["--size", "--full"])],
+)
+def test_options_of_the_page_of_a_run_are_refused_with_a_sweep(swept, capsys, words, said):
+    assert main(application(PROGRAM), ["report", str(swept), *words]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == len(said)
+    assert all(it in line and "is not for the page of a sweep" in line for it, line in zip(said, lines, strict=True))
+    assert not (swept / "report.html").exists()
+
+
+def test_a_sweep_of_another_package_is_refused(swept, capsys):
+    for card in swept.glob("*/card.json"):
+        card.write_text(card.read_text().replace('"package": "toy"', '"package": "other"'))
+    assert main(application(PROGRAM), ["report", str(swept)]) == 2
+    assert "holds a run of other" in capsys.readouterr().err
 
 
 def test_a_page_of_a_sweep_is_complete_in_itself(page, heard, swept, tmp_path):

@@ -148,7 +148,7 @@ def main():
             for dtype in (np.float32, np.float64):
                 found = {}
                 compiled.device_function.cache_clear()
-                import_module("porescale.lbm.device.fluid").kernel_of.cache_clear()
+                compiled.device_kernel.cache_clear()
                 with compiling(found, capability):
                     step(operator, dtype, soft=soft)
                 for (function, _), code in found.items():
