@@ -30,12 +30,17 @@ CLOCK = "TOY_CLOCK"
 
 @dataclass
 class Beads:
-    """[toy] of the scene.  slow : seconds of a step;  breaks_at : step;  disk_fails_at : number of a call to it."""
+    """[toy] of the scene.
+
+    slow : seconds of a step;  breaks_at : step;  disk_fails_at : number of a call to it;  packs : whether there is no
+    card before the runs are fast.
+    """
 
     beads: int = 7
     slow: float = 0.2
     breaks_at: int = 1 << 40
     disk_fails_at: int = -1
+    packs: bool = False
 
 
 class Stepping(Toy):
@@ -63,6 +68,8 @@ def run(scene: Path, folder: Path, settings: list[str], *, resume: bool, overwri
     folder.parent.mkdir(parents=True, exist_ok=True)
     with open(folder.parent / "begun", "a") as file:
         file.write(f"{folder.name} {os.getpid()} {'resumed' if resume else 'fresh'}\n")
+    while toy.packs and not (folder.parent / "go").exists():
+        time.sleep(0.01)
     disk = nullcontext()
     if toy.disk_fails_at >= 0:
         from tests.reference.faults.failing_disk import Disk, failing
@@ -130,6 +137,7 @@ def stepping() -> "Package":
         slow: float = 0.2
         breaks_at: int = 1 << 40
         disk_fails_at: int = -1
+        packs: bool = False
 
     class SteppingScene(Section):
         """A scene."""
@@ -148,7 +156,7 @@ def call(words: list[str]) -> int:
     from porescale.common.cli.application import application, main
     from porescale.common.studies.schedulers import slurm
 
-    slurm.FIRST_LOOK = slurm.LAST_LOOK = 0.05
+    slurm.FIRST_LOOK = slurm.LAST_LOOK = slurm.SECOND_LOOK = slurm.ABSENT_SECONDS = 0.05
     return main(application(stepping()), words)
 
 

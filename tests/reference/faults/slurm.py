@@ -25,7 +25,7 @@ from tests.reference.waiting import PATIENCE, awaited
 LOOK = 0.01
 TOOLS = {
     "sbatch": """
-        [ -e "$FAKE/refuse" ] && { cat "$FAKE/refuse" >&2; exit 1; }
+        [ -e "$FAKE/refuse" ] && { cat "$FAKE/refuse" >&2; touch "$FAKE/refused"; exit 1; }
         n=100; until mkdir "$FAKE/jobs/$n" 2>/dev/null; do n=$((n + 1)); done
         cp "$1" "$FAKE/jobs/$n/script"; env -0 > "$FAKE/jobs/$n/environment"; pwd > "$FAKE/jobs/$n/place"
         touch "$FAKE/jobs/$n/sent"; until [ -e "$FAKE/jobs/$n/known" ]; do sleep 0.01; done
@@ -33,6 +33,8 @@ TOOLS = {
         echo "Submitted batch job $n" """,
     "squeue": """
         [ -e "$FAKE/deaf" ] && { echo "slurm_load_jobs error: Unable to contact slurm controller" >&2; exit 1; }
+        [ -e "$FAKE/empty once" ] && { rm "$FAKE/empty once"; exit 0; }
+        [ -e "$FAKE/empty" ] && { echo >> "$FAKE/empty"; exit 0; }
         for word; do case $word in --name=*) want=${word#--name=};; esac; done
         while IFS='|' read -r id state name; do [ "$name" = "$want" ] && echo "$id|$state"; done < "$FAKE/queue"
         exit 0""",
@@ -122,13 +124,17 @@ class Slurm:
         job.again, job.end = again, "NODE_FAIL"
         job.kill()
 
-    def preempt(self, number: str, *, grace: float = PATIENCE) -> None:
-        """Another job needs the machine: SIGTERM, SIGKILL where the run has not ended after a while; queued again."""
+    def preempt(self, number: str, *, grace: float = PATIENCE, rest: float = 0.0) -> None:
+        """Another job needs the machine: SIGTERM, SIGKILL where the run has not ended after a while; queued again.
+
+        rest : seconds that what else runs in the job has after the run.
+        """
         job = self.jobs[number]
         job.again, job.end = True, "PREEMPTED"
         runs = [it for it in job.processes() if "submitit.core._submit" not in it.cmdline()]
         job.signal(signal.SIGTERM)
         psutil.wait_procs(runs, timeout=grace)
+        time.sleep(rest)
         job.kill()
 
     def warn(self, number: str) -> None:

@@ -44,7 +44,10 @@ class Dask:
             raise InputError(Fault(OPTION, address, "has no workers", repair="start some with `dask worker`"))
 
     def run(self, tasks: Sequence[Task], jobs: int | None, progress: Progress) -> Iterator[Done]:
-        """See `Scheduler`; a task whose worker is lost is run by another one, from its checkpoint."""
+        """See `Scheduler`; a task whose worker is lost is run by another one, from its checkpoint.
+
+        Left early, what has not begun is cancelled; what runs on a worker goes on to its end.
+        """
         from distributed import as_completed
 
         progress.at_a_time = min(jobs or self.slots, self.slots)
@@ -52,14 +55,19 @@ class Dask:
         # Never shared, since a run folder is no pure function's value.
         sent = {self._send(task): task for task in islice(left, progress.at_a_time)}
         ended = as_completed(list(sent))
-        for future in ended:
-            task = sent.pop(future)
-            error = future.exception()
-            yield Done(task, *future.result()) if error is None else Done(task, 1, f"{type(error).__name__}: {error}")
-            for more in islice(left, 1):
-                future = self._send(more)
-                sent[future] = more
-                ended.add(future)
+        try:
+            for future in ended:
+                task = sent.pop(future)
+                error = future.exception()
+                said = None if error is None else f"{type(error).__name__}: {error}"
+                yield Done(task, *future.result()) if said is None else Done(task, 1, said)
+                for more in islice(left, 1):
+                    future = self._send(more)
+                    sent[future] = more
+                    ended.add(future)
+        except BaseException:
+            self.client.cancel(list(sent))
+            raise
 
     def _send(self, task: Task) -> Any:
         return self.client.submit(elsewhere, task, pure=False)

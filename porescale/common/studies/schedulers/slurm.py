@@ -29,15 +29,23 @@ MOST = 1000
 """Jobs of one array; a cluster that does not say otherwise refuses more."""
 LOSSES = 3
 """How often a job may vanish without a result before its run is given up."""
-ABSENT = 2
-"""In how many looks at the queue a job must be absent to count as ended: one may be wrong."""
+SECOND_LOOK = 5.0
+"""Seconds after which a command that begins looks again, where the queue lacks jobs of an earlier one."""
+ABSENT_SECONDS = 60.0
+"""How long a job must be absent from the queue to count as ended: an answer may be wrong."""
+ALIVE = ("RUNNING", "PENDING", "REQUEUED", "COMPLETING", "CONFIGURING", "SUSPENDED")
+"""States in the accounts of jobs that have not ended, whatever the queue says."""
 ENDS = {"finished": 0, "unstable": 3}
 """Exit codes of runs whose cards say that nothing is left to do."""
 
 
 @dataclass
 class Call:
-    """What one call of a command waits for.  waiting : task and job by name;  todo : tasks without a job."""
+    """What one call of a command waits for.
+
+    waiting : task and job by name;  todo : tasks without a job;  absent : since when the queue lacks a job, by number;
+    begun : whether Slurm has taken a job;  refused : why it did not take the last ones.
+    """
 
     queue: Queue
     progress: Progress
@@ -45,16 +53,31 @@ class Call:
     todo: list[Task]
     waiting: dict[str, tuple[Task, Any]]
     lost: Counter[str] = field(default_factory=Counter)
-    absent: Counter[str] = field(default_factory=Counter)
+    absent: dict[str, float] = field(default_factory=dict)
+    begun: bool = False
+    refused: str = ""
     said: tuple[str, float] = ("", 0.0)
 
     def submit(self) -> None:
-        """Queue what has no job: all at once where none is queued, else as many as do not exceed ``jobs``."""
+        """Queue what has no job: all at once where none is queued, else as many as do not exceed ``jobs``.
+
+        InputError where Slurm refuses the first ones; what it refuses later is tried again.
+        """
+        self.begun = self.begun or bool(self.waiting)
         room = MOST if not self.waiting or self.jobs is None else min(self.jobs - len(self.waiting), MOST)
         now, self.todo = self.todo[: max(room, 0)], self.todo[max(room, 0) :]
-        if now:
+        if not now:
+            return
+        try:
             made = self.queue.submit(now, self.jobs)
-            self.waiting |= {task.name: (task, job) for task, job in zip(now, made, strict=True)}
+        except InputError as error:
+            if not self.begun:
+                raise
+            self.todo = [*now, *self.todo]
+            self.refused = f"; {error.faults[0].problem}; tried again"
+            return
+        self.begun, self.refused = True, ""
+        self.waiting |= {task.name: (task, job) for task, job in zip(now, made, strict=True)}
 
     def look(self) -> Iterator[Done]:
         """What has ended since the last look."""
@@ -64,8 +87,7 @@ class Call:
             self._say(f"squeue does not answer ({error.strerror})")
             return
         for task, job in list(self.waiting.values()):
-            self.absent[job.job_id] = 0 if job.job_id in states else self.absent[job.job_id] + 1
-            gone = self.absent[job.job_id] >= ABSENT
+            gone = self._gone(job, states)
             if job.paths.result_pickle.exists() or gone:
                 done = self._result(task, job) if job.paths.result_pickle.exists() else self._without_result(task, job)
                 self.waiting.pop(task.name)
@@ -75,9 +97,22 @@ class Call:
         mine = [states.get(job.job_id, "") for _, job in self.waiting.values()]
         running = sum(state in ("RUNNING", "COMPLETING") for state in mine)
         self.progress.at_a_time = running or self.progress.at_a_time
-        if mine:
+        if mine or self.refused:
             queued = len(mine) - running + len(self.todo)
-            self._say(f"{running} run, {queued} are queued", f", {self.progress.words()}")
+            self._say(f"{running} run, {queued} are queued{self.refused}", f", {self.progress.words()}")
+
+    def _gone(self, job: Any, states: dict[str, str]) -> bool:
+        """Whether the queue has lacked a job for long, and the accounts do not have it either."""
+        now = time.monotonic()
+        if job.job_id in states:
+            self.absent.pop(job.job_id, None)
+            return False
+        if now - self.absent.setdefault(job.job_id, now) < ABSENT_SECONDS:
+            return False
+        if _state(job).startswith(ALIVE):
+            self.absent[job.job_id] = now  # asked again after as long
+            return False
+        return True
 
     def _say(self, text: str, more: str = "") -> None:
         """A line, unless it is the last one again and that was not long ago."""
@@ -96,10 +131,10 @@ class Call:
 
     def _without_result(self, task: Task, job: Any) -> Done | None:
         """What has become of a run whose job is not queued and has left no result; None if it is to be queued anew."""
-        state = str(job.get_info(mode="force").get("State") or "no state known")
+        state = _state(job)
         folder = task.place / task.folder
         outcome = read_card(folder).get("outcome") if (folder / CARD).exists() else None
-        if outcome in ENDS:
+        if outcome == "finished" or (outcome in ENDS and not task.again):
             return Done(task, ENDS[str(outcome)], "")
         if state.startswith("CANCELLED"):
             return Done(task, INTERRUPTED, f"job {job.job_id} was cancelled")
@@ -109,6 +144,11 @@ class Call:
         self.progress.say(f"{task.name}: job {job.job_id} is lost ({state}), queued again")
         self.todo.append(task)
         return None
+
+
+def _state(job: Any) -> str:
+    """What the accounts say of a job."""
+    return str(job.get_info(mode="force").get("State") or "no state known")
 
 
 class Slurm:
@@ -131,7 +171,11 @@ class Slurm:
             raise InputError(Fault("folder", str(folder), problem, repair=repair))
         queue = Queue(folder, self.asked)
         try:
-            found = queue.found(queue.states())
+            states = queue.states()
+            if queue.missing(states):
+                time.sleep(SECOND_LOOK)
+                states |= queue.states()
+            found = queue.found(states)
         except OSError as error:
             raise InputError(Fault(OPTION, "slurm", f"squeue does not answer ({error.strerror})")) from None
         waiting = {task.name: found[task.name] for task in tasks if task.name in found}

@@ -52,7 +52,7 @@ class SlurmJob:
             pass
         if isinstance(found[0], OSError):
             return PorescaleError.code, f"{found[0].filename}: {found[0].strerror}"
-        if found[0][0] == INTERRUPTED:
+        if found[0][0] in (INTERRUPTED, -signal.SIGTERM):  # with its state saved, or before it had one
             # Slurm asked the run itself: it now queues the job again or ends it; no result may say that it is done.
             time.sleep(LAST_SECONDS)
             raise SystemExit(INTERRUPTED)
@@ -80,9 +80,9 @@ class SlurmJob:
 
 
 def reached(task: Task) -> int:
-    """The step of the run's checkpoint, -1 where there is none."""
+    """The step of the checkpoint that the run goes on from, -1 where there is none or it is begun anew."""
     folder: Path = task.place / task.folder
     try:
-        return how_far(folder).step if (folder / CHECKPOINT).exists() else -1
+        return how_far(folder).step if (folder / CHECKPOINT).exists() and not task.anew() else -1
     except (InputError, OSError):
         return -1

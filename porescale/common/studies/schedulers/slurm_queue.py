@@ -7,9 +7,10 @@ is known: a command that is called again finds its jobs there, whatever ended it
 import hashlib
 import io
 import logging
+import os
 import subprocess
-from collections.abc import Sequence
-from contextlib import redirect_stderr
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stderr
 from pathlib import Path
 from pickle import UnpicklingError
 from typing import Any
@@ -26,6 +27,11 @@ TIMEOUTS = 100_000
 """How often a job may come to the end of its time: the run ends some time, or stops saving anything new."""
 PATIENCE = 60.0
 """Seconds after which a command of Slurm is given up."""
+DEFAULTS = ("account", "partition", "qos", "constraint", "reservation")
+"""What sbatch reads from variables (SBATCH_ACCOUNT) that the user has set, where the option does not say otherwise.
+
+Others stay out, since they come before what a job's script asks for: its name, time or array.
+"""
 
 
 class Queue:
@@ -48,6 +54,11 @@ class Queue:
             raise OSError(0, last_line(str(getattr(error, "stderr", "") or error)), "squeue") from None
         rows = (line.strip().partition("|") for line in done.stdout.splitlines() if "|" in line)
         return {number: state for number, _, state in rows}
+
+    def missing(self, states: dict[str, str]) -> bool:
+        """Whether a job that an earlier command has queued has left no result and is not among these."""
+        numbers = {path.name.removesuffix(SUBMITTED) for path in self.folder.glob(f"[0-9]*{SUBMITTED}")}
+        return any(not (self.folder / f"{number}{RESULT}").exists() for number in numbers - set(states))
 
     def found(self, states: dict[str, str]) -> dict[str, tuple[Task, Any]]:
         """Task and job, by the task's name, of what an earlier command has queued.
@@ -78,8 +89,9 @@ class Queue:
             additional_parameters={"requeue": True}, **self.asked,
         )  # fmt: skip
         try:
+            kept = self._defaults()
             # A command within a job of its own does not hand that on; submitit prints what it raises, too.
-            with self.submitit.helpers.clean_env(), redirect_stderr(io.StringIO()):
+            with self.submitit.helpers.clean_env(), _set(kept), redirect_stderr(io.StringIO()):
                 made: list[Any] = executor.map_array(SlurmJob(60.0 * self.asked["time"]), tasks)
         except (self.submitit.core.utils.FailedJobError, self.submitit.core.utils.FailedSubmissionError) as error:
             raise InputError(Fault(OPTION, "slurm", f"sbatch refuses: {last_line(str(error))}")) from None
@@ -94,8 +106,24 @@ class Queue:
         """End these jobs."""
         subprocess.run(["scancel", *numbers], capture_output=True, timeout=PATIENCE, check=False)
 
+    def _defaults(self) -> dict[str, str]:
+        """The user's variables that sbatch shall read."""
+        names = {f"SBATCH_{key.upper()}" for key in DEFAULTS if key not in self.asked}
+        return {name: os.environ[name] for name in names if name in os.environ}
+
     def _job(self, number: str) -> Any:
         return self.submitit.SlurmJob(self.folder, number)
+
+
+@contextmanager
+def _set(variables: dict[str, str]) -> Iterator[None]:
+    """Environment variables that are not set, while this lasts."""
+    os.environ.update(variables)
+    try:
+        yield
+    finally:
+        for name in variables:
+            os.environ.pop(name, None)
 
 
 def last_line(text: str) -> str:

@@ -6,7 +6,6 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -44,11 +43,15 @@ class Task:
 
     def command(self) -> list[str]:
         """The words with what goes on with the run, if it was begun; InputError where its card cannot be read."""
-        folder = self.place / self.folder
-        if not (folder / CARD).exists():
+        if not (self.place / self.folder / CARD).exists():
             return list(self.words)
-        anew = self.again and read_card(folder).get("outcome") in ("unstable", "failed")
-        return [*self.words, "--overwrite" if anew else "--resume"]
+        return [*self.words, "--overwrite" if self.anew() else "--resume"]
+
+    def anew(self) -> bool:
+        """Whether a run that was begun is begun anew; InputError where its card cannot be read."""
+        folder = self.place / self.folder
+        begun = self.again and (folder / CARD).exists()
+        return begun and read_card(folder).get("outcome") in ("unstable", "failed")
 
 
 class Done(NamedTuple):
@@ -73,12 +76,22 @@ class Process:
         self._process: subprocess.Popen[str] | None = None
 
     def run(self) -> tuple[int, str]:
-        """Exit code, and what was said on stderr; 130 where it was stopped before it began."""
-        try:
-            self._wait_for_others()
-            words = self.task.command()
-        except InputError as error:
-            return error.code, str(error)
+        """Exit code, and what was said on stderr; 130 where it was stopped before it began.
+
+        A run that another process began, unseen since it had no card yet, refuses this one: it is waited for, too.
+        """
+        while True:
+            try:
+                self._wait_for_others()
+                words = self.task.command()
+            except InputError as error:
+                return error.code, str(error)
+            code, said = self._once(words)
+            if code != InputError.code or not self._held():
+                return code, said
+
+    def _once(self, words: Sequence[str]) -> tuple[int, str]:
+        """`run` with this command line."""
         with self._lock:
             if self._stopped.is_set():
                 return INTERRUPTED, "interrupted"
@@ -110,10 +123,16 @@ class Process:
 
     def _wait_for_others(self) -> None:
         """Until no other process holds the run folder, or this one is stopped."""
+        while self._held() and not self._stopped.wait(LOOK):
+            pass
+
+    def _held(self) -> bool:
+        """Whether another process makes the run; not where its lock cannot be opened, as the run itself then says."""
         folder = self.task.place / self.task.folder
-        while (folder / CARD).exists():
-            with suppress(OSError), owned(folder) as held:
-                if held:
-                    return
-            if self._stopped.wait(LOOK):
-                return
+        try:
+            if (folder / CARD).exists():
+                with owned(folder) as mine:
+                    return not mine
+        except OSError:
+            pass
+        return False

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 from porescale.common.core.atomic import owned
 from porescale.common.core.errors import InputError
 from porescale.common.studies.schedulers import slurm as slurm_scheduler
+from porescale.common.studies.schedulers import task as task_module
 from porescale.common.studies.schedulers.dask import Dask, takes
 from porescale.common.studies.schedulers.law import Scheduler, scheduler_of
 from porescale.common.studies.schedulers.local import Local
@@ -23,7 +25,7 @@ from porescale.common.studies.schedulers.task import INTERRUPTED, Process, Task
 from tests.reference.faults.slurm import slurm
 from tests.reference.same_run import differences
 from tests.reference.toy_command import SCENE, begun, call, run_alone
-from tests.reference.waiting import PATIENCE, running, until
+from tests.reference.waiting import PATIENCE, awaited, running, until
 
 
 @contextmanager
@@ -52,8 +54,8 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder with a scene whose runs are fast, to which commands go."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
-    monkeypatch.setattr(slurm_scheduler, "FIRST_LOOK", 0.05)
-    monkeypatch.setattr(slurm_scheduler, "LAST_LOOK", 0.05)
+    for name in ("FIRST_LOOK", "LAST_LOOK", "SECOND_LOOK", "ABSENT_SECONDS"):
+        monkeypatch.setattr(slurm_scheduler, name, 0.05)
     (tmp_path / "scene.toml").write_text(SCENE)
     (tmp_path / "runs").mkdir()
     (tmp_path / "runs" / "go").touch()
@@ -110,16 +112,65 @@ def test_a_killed_command_called_again_waits_for_what_still_runs_and_runs_nothin
     assert "beads=4: finished" in capsys.readouterr().err
 
 
-def test_a_held_run_folder_is_waited_for_until_the_campaign_is_stopped(place):
+def test_a_held_run_folder_is_waited_for_until_the_campaign_is_stopped(place, monkeypatch):
     folder = Path("runs/held")
     folder.mkdir()
     (folder / "card.json").write_text('{"scene": {}}')
     process = Process(task("held"))
-    with owned(folder) as held:
+    looks = []
+    held_by_another = Process._held
+    monkeypatch.setattr(task_module, "LOOK", 0.01)
+    monkeypatch.setattr(Process, "_held", lambda self: looks.append(held_by_another(self)) or looks[-1])
+    with owned(folder) as held, ThreadPoolExecutor(1) as pool:
         assert held
-        process.stop()
-        assert process.run() == (INTERRUPTED, "interrupted")
+        ended = pool.submit(process.run)
+        try:
+            awaited(lambda: len(looks) > 3 or ended.done(), PATIENCE)
+            assert all(looks)
+            assert not ended.done()
+        finally:
+            process.stop()
+        assert ended.result(PATIENCE) == (INTERRUPTED, "interrupted")
     assert begun(Path("runs")) == []
+
+
+def test_a_run_that_another_process_began_unseen_is_waited_for_and_gone_on_with(place, monkeypatch):
+    folder, go = Path("runs/a"), Path("runs/go")
+    go.unlink()
+    folder.mkdir()
+    looks = []
+    held_by_another = Process._held
+    monkeypatch.setattr(Process, "_held", lambda self: looks.append(held_by_another(self)) or looks[-1])
+    with ThreadPoolExecutor(1) as pool:
+        with owned(folder) as held:
+            assert held
+            ended = pool.submit(Process(task("a", "toy.packs=true")).run)
+            awaited(lambda: begun(Path("runs")) or ended.done(), PATIENCE)  # it packs: there was no card
+            (folder / "card.json").write_text('{"scene": {}}')
+            go.touch()
+            awaited(lambda: True in looks or ended.done(), PATIENCE)
+            assert not ended.done()
+        assert ended.result(PATIENCE)[0] == 0
+    assert len(begun(Path("runs"))) == 2
+
+
+def test_a_run_folder_whose_lock_cannot_be_opened_is_the_verdict_of_its_point(place):
+    folder = Path("runs/a")
+    (folder / ".lock").mkdir(parents=True)
+    (folder / "card.json").write_text('{"scene": {}}')
+    code, said = Process(task("a")).run()
+    assert code == 1
+    assert ".lock" in said
+
+
+def test_dask_left_early_cancels_what_it_has_sent(place, monkeypatch):
+    with dasks(place) as scheduler:
+        cancelled, cancel = [], scheduler.client.cancel
+        monkeypatch.setattr(scheduler.client, "cancel", lambda them: (cancelled.extend(them), cancel(them)))
+        done = scheduler.run([task(name) for name in "abc"], 2, of({}, str))
+        next(done)
+        done.close()
+        assert [it.cancelled() for it in cancelled] == [True]  # of three one has ended, one was not sent
 
 
 def test_a_run_that_failed_is_gone_on_with_and_begun_anew_only_where_that_is_asked_for(place):

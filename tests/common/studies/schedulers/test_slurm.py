@@ -7,13 +7,17 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from porescale.common.core.atomic import owned
+from porescale.common.core.errors import PorescaleError
 from porescale.common.studies.schedulers import slurm as scheduler
 from porescale.common.studies.schedulers import slurm_job
+from porescale.common.studies.schedulers.progress import of
+from porescale.common.studies.schedulers.task import Task
 from porescale.common.watch.sweep import Points
 from tests.reference.faults.slurm import Slurm, ended, slurm
 from tests.reference.same_run import differences
@@ -28,8 +32,8 @@ def cluster(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Slurm]:
     """A Slurm, in a folder with a scene; looks at its queue follow each other at once."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
-    monkeypatch.setattr(scheduler, "FIRST_LOOK", 0.05)
-    monkeypatch.setattr(scheduler, "LAST_LOOK", 0.05)
+    for name in ("FIRST_LOOK", "LAST_LOOK", "SECOND_LOOK", "ABSENT_SECONDS"):
+        monkeypatch.setattr(scheduler, name, 0.05)
     (tmp_path / "scene.toml").write_text(SCENE)
     with slurm(tmp_path / "cluster") as made:
         yield made
@@ -123,6 +127,78 @@ def test_a_preempted_job_saves_its_state_and_is_queued_again(cluster, sweep):
     assert differences(OUT / "beads=3", untouched(3, Path("alone"))) == []
 
 
+def test_a_job_preempted_before_its_run_has_a_card_is_queued_again(cluster, sweep):
+    cluster.once(lambda: begun(OUT), lambda: cluster.preempt("100", rest=0.5))
+    cluster.once(lambda: cluster.jobs["100"].starts == 2, go)
+    cluster.once(lambda: cluster.jobs["100"].starts == 2, go)
+    code, said = sweep("3", "--set", "toy.packs=true")
+    assert code == 0, said
+    assert cluster.begun() == {"100": 2}
+    assert [it[2] for it in begun(OUT)] == ["fresh", "fresh"]
+    assert outcomes() == {"beads=3": "finished"}
+
+
+@pytest.mark.parametrize(("code", "result"), [(130, False), (-signal.SIGTERM, False), (-signal.SIGKILL, True)])
+def test_what_slurm_ends_leaves_no_result(tmp_path, monkeypatch, code, result):
+    monkeypatch.setattr(slurm_job, "LAST_SECONDS", 0.0)
+    monkeypatch.setattr(slurm_job.Process, "run", lambda self: (code, "said"))
+    job, task = slurm_job.SlurmJob(600.0), Task("a", "toy", ("run",), tmp_path / "a")
+    if result:
+        assert job(task) == (code, "said")
+    else:
+        with pytest.raises(SystemExit):
+            job(task)
+
+
+def test_an_empty_queue_is_not_believed_while_the_accounts_say_that_jobs_run(cluster, sweep):
+    empty = cluster.folder / "empty"
+    cluster.once(under_way("beads=3"), empty.touch)
+    cluster.once(lambda: empty.read_text().count("\n") > 20, go)  # looks, for longer than a job may be absent
+    code, said = sweep("3")
+    assert code == 0, said
+    assert cluster.begun() == {"100": 1}
+    assert len(begun(OUT)) == 1
+
+
+@pytest.mark.parametrize(("again", "code"), [(False, 3), (True, None)])
+def test_a_lost_job_of_an_unstable_run_is_queued_again_where_that_is_asked_for(tmp_path, again, code):
+    class Job:
+        """It has vanished."""
+
+        job_id = "100"
+
+        def get_info(self, mode: str) -> dict[str, str]:
+            return {}
+
+    (tmp_path / "card.json").write_text('{"scene": {}, "outcome": "unstable"}')
+    task = Task("a", "toy", ("run",), tmp_path, again)
+    here = scheduler.Call(None, of({}, str), None, [], {})  # type: ignore[arg-type]
+    done = here._without_result(task, Job())
+    assert (done and done.code, here.todo) == (code, [task] if again else [])
+
+
+def test_sbatch_that_fails_later_is_tried_again(cluster, sweep):
+    refuse, refused = cluster.folder / "refuse", cluster.folder / "refused"
+    (cluster.folder / "no accounts").touch()
+    text = "sbatch: error: Batch job submission failed: Socket timed out"
+    cluster.once(under_way("beads=3"), lambda: (refuse.write_text(text), cluster.lose("100")))
+    cluster.once(refused.exists, lambda: (refuse.unlink(), go()))
+    code, said = sweep("3")
+    assert code == 0, said
+    assert any("0 run, 1 are queued; sbatch refuses: " in it and "Socket timed out; tried again" in it for it in said)
+    assert list(cluster.jobs) == ["100", "101"]
+
+
+def test_what_the_user_has_set_for_sbatch_is_kept_where_the_option_does_not_say_otherwise(cluster, monkeypatch):
+    for name, value in (("ACCOUNT", "abc"), ("PARTITION", "short"), ("JOB_NAME", "mine")):
+        monkeypatch.setenv(f"SBATCH_{name}", value)
+    go()
+    assert call([*words("3")[:-1], "slurm:partition=long"]) == 0
+    pairs = (cluster.jobs["100"].script.parent / "environment").read_text().split("\0")
+    assert [it for it in pairs if it.startswith("SBATCH_")] == ["SBATCH_ACCOUNT=abc"]
+    assert os.environ["SBATCH_PARTITION"] == "short"
+
+
 @pytest.mark.slow
 def test_a_lost_job_is_queued_again_and_given_up_after_three(cluster, sweep):
     cluster.once(under_way("beads=3"), lambda: cluster.lose("100"))
@@ -164,12 +240,16 @@ def command(*more: str, **variables: str) -> list[str]:
     return [sys.executable, "-m", "tests.reference.toy_command", *words("3,4", *more)]
 
 
-def test_a_killed_command_called_again_finds_its_jobs(cluster, sweep):
+@pytest.mark.parametrize("wrong", [False, True])
+def test_a_killed_command_called_again_finds_its_jobs_though_the_queue_is_wrong_once(cluster, sweep, wrong):
     with running(command(), stderr=subprocess.DEVNULL) as process:
         assert until(process, under_way("beads=4"), PATIENCE)
         kill(process)
     assert {job.state for job in cluster.jobs.values()} == {"RUNNING"}  # none of them went with it
-    cluster.once(lambda: True, go)
+    once = cluster.folder / "empty once"
+    if wrong:
+        once.touch()
+    cluster.once(lambda: not once.exists(), go)
     code, said = sweep()
     assert code == 0, said
     assert "2 of 2 are queued already" in said
@@ -294,9 +374,6 @@ def test_what_sbatch_refuses_is_one_line(cluster, sweep):
 
 
 def test_a_run_that_saves_nothing_in_the_time_of_a_job_is_not_queued_for_ever(tmp_path, monkeypatch):
-    from porescale.common.core.errors import PorescaleError
-    from porescale.common.studies.schedulers.task import Task
-
     job = slurm_job.SlurmJob(600.0)
     task = Task("a", "toy", ("run",), tmp_path / "a")
     job._began, job._step, job._ended = -1e9, -1, threading.Event()
@@ -306,3 +383,22 @@ def test_a_run_that_saves_nothing_in_the_time_of_a_job_is_not_queued_for_ever(tm
         job.checkpoint(task)
     monkeypatch.setattr(slurm_job, "reached", lambda task: 7)
     assert job.checkpoint(task).args == (task,)
+
+
+def test_the_time_of_a_job_counts_from_where_its_run_begins(tmp_path, monkeypatch):
+    folder = run_alone(3, tmp_path / "alone")
+    task = Task("a", "toy", ("run",), folder)
+    whole = slurm_job.reached(task)
+    assert whole == 100
+    card = folder / "card.json"
+    card.write_text(card.read_text().replace('"outcome": "finished"', '"outcome": "unstable"'))
+    anew = replace(task, again=True)
+    assert (slurm_job.reached(task), slurm_job.reached(anew)) == (whole, -1)  # its old checkpoint is no use to it
+    job = slurm_job.SlurmJob(600.0)
+    job._began, job._step, job._ended = -1e9, slurm_job.reached(anew), threading.Event()
+    job._ended.set()
+    job._process = slurm_job.Process(anew)
+    with pytest.raises(PorescaleError, match="no checkpoint within"):  # it still packs, beside that checkpoint
+        job.checkpoint(anew)
+    card.write_text(card.read_text().replace('"outcome": "unstable"', '"outcome": "interrupted"'))
+    assert job.checkpoint(anew).args == (anew,)

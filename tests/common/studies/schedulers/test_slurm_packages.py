@@ -40,8 +40,8 @@ settings = { numerics.spacing = 0.02 }
 def cluster(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
-    monkeypatch.setattr(scheduler, "FIRST_LOOK", 0.1)
-    monkeypatch.setattr(scheduler, "LAST_LOOK", 0.1)
+    for name in ("FIRST_LOOK", "LAST_LOOK", "SECOND_LOOK", "ABSENT_SECONDS"):
+        monkeypatch.setattr(scheduler, name, 0.1)
     with slurm(tmp_path / "cluster") as made:
         yield made
 
