@@ -40,7 +40,7 @@ WRONG: dict[tuple[str, ...], str] = {
     ("porescale", "bench", "dem", "--size", "1000000000000"): "(allowed: 1 to 10000000)",
     ("porescale", "bench", "lbm", "--size", "0"): "(allowed: 1 to 10000000)",
     ("continuum", "bench", "water", "--size", "1e9"): 'unable to convert "1e9" into int',
-    ("porescale", "check", "good.toml", "--set", "fluid.viscosity=1,5e-5"): "unknown unit ',5e-5'",
+    ("porescale", "check", "good.toml", "--set", "fluid.viscosity=1,5e-5"): "has a comma; write a number with a point",
     ("porescale", "check", "good.toml", "--set", "fluid.viscosity 2e-5"): "is not section.key=value",
     ("porescale", "run", "good.toml", "--set", "fluid.viscosity"): "--set",
     ("porescale", "run", "good.toml", "--set", "fluid.viscosity=-1"): "--set",
