@@ -39,15 +39,14 @@ class Simulation(ShownSimulation):
     had compiled before, and the seconds that they took.
     """
 
-    built_in = 0.0
-    compiled_before: tuple[int, float] = (0, 0.0)
-
     def __init__(self, system: System, stepper: Stepper) -> None:
         """``system`` : with its parts in the order of their columns, tables, arrays and state;  ``stepper`` : of it."""
         self.scene, self.derived, self.clock = system.scene, system.derived, system.clock
         self.fluid, self.grains, self.coupled = system.fluid, system.grains, system.coupled
         self.weight, self.frames = system.weight, system.frames
         self.stepper, self.parts = stepper, system.parts
+        self.built_in = 0.0
+        self.compiled_before = (0, 0.0)
         self._held = system.held
         self._before = [part.before for part in self.parts if overrides(part, "before")]
         self._after = [part.after for part in self.parts if overrides(part, "after")]
