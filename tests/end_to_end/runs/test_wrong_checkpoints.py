@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from porescale.common.record.checkpoint import read_checkpoint, read_header, write_checkpoint
+from tests.reference.faults.spoiled import renumbered
 from tests.reference.folders import ROOT
 from tests.reference.programs import KINDS, Program, program
 from tests.reference.same_run import differences
-from tests.reference.faults.spoiled import renumbered
 
 OTHERS = {"column": "tank", "asleep": "column", "framed": "tank", "tank": None, "seeping": "tank", "soil": "tank",
           "bubble": "tank", "air": "seeping"}  # fmt: skip
