@@ -3,6 +3,7 @@
 import re
 import sys
 import tomllib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -163,8 +164,10 @@ def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch,
         raise Asked(options["overwrite"])
 
     monkeypatch.setattr("porescale.common.record.drive.drive", asked)
+    monkeypatch.setattr("porescale.builders.cost.expected", lambda *_: SimpleNamespace(finishing=0.0))
+    model = SimpleNamespace(derived=SimpleNamespace(model_step=1e-3))
     for part in (porescale.cli.main.PACKAGE, continuum_sph.cli.PACKAGE):
         (tmp_path / "scene.toml").write_text(part.template(), encoding="utf-8")
         scene = load(tmp_path, part.scene())
         with pytest.raises(Asked, match=str(overwrite)):
-            part.drive(None, tmp_path, scene, card={}, resume=False, quiet=True, overwrite=overwrite)
+            part.drive(model, tmp_path, scene, card={}, resume=False, quiet=True, overwrite=overwrite)
