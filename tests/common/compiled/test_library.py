@@ -49,17 +49,15 @@ def emitted(dispatcher) -> list[bool]:
 EVEN = np.array([2, 4, 6])
 
 
-def test_what_kernels_call_has_no_machine_code_of_its_own():
-    assert total_of_halves(EVEN) == 6
-    assert emitted(halved.inner) == [False]
-    assert emitted(total_of_halves.compiled) == [True]
-
-
-def test_a_function_of_kernels_may_be_called_from_python_too():
-    assert total_of_halves(EVEN) == 6
-    assert halved(6) == 3
-    assert emitted(halved.compiled) == [True]  # the check that would fail were it never made
-    assert emitted(halved.inner) == [False]
+def test_what_kernels_call_has_no_machine_code_of_its_own_unless_python_calls_it(tmp_path):
+    """In a process that finds nothing on disk; the last one would fail were it never made."""
+    code = (
+        "from tests.common.compiled import test_library as it\n"
+        "print(it.total_of_halves(it.EVEN), it.emitted(it.halved.inner), it.emitted(it.total_of_halves.compiled))\n"
+        "print(it.halved(6), it.emitted(it.halved.inner), it.emitted(it.halved.compiled))"
+    )
+    said = done([sys.executable, "-c", code], env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}).stdout
+    assert said.splitlines() == ["6 [False] [True]", "3 [False] [True]"]
 
 
 def test_loops_over_threads_may_be_called_from_kernels():

@@ -13,7 +13,7 @@ import pytest
 
 from porescale.common.cli.application import QUOTA
 from porescale.common.record import stop
-from porescale.common.studies import runner
+from porescale.common.studies.schedulers import task
 from tests.reference.folders import ROOT
 from tests.reference.scenes import COLUMN, write
 
@@ -165,7 +165,7 @@ def test_a_run_is_resumed_to_the_same_end(tmp_path):
 
 
 def test_windows_stops_runs_by_its_own_signal(monkeypatch):
-    assert runner.OWN_GROUP == 0  # here; there a group for each process, to which its signal can be sent
+    assert task.OWN_GROUP == 0  # here; there a group for each process, to which its signal can be sent
     assert [number.name for number in stop.polite_signals()] == ["SIGINT", "SIGTERM"]
     monkeypatch.setattr(stop, "POLITE", (*stop.POLITE, "SIGUSR1"))  # stands for one more, as Windows has
     assert len(stop.polite_signals()) == 3
