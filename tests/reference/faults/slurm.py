@@ -40,7 +40,7 @@ TOOLS = {
         exit 0""",
     "sacct": """
         [ -e "$FAKE/no accounts" ] && { echo "Slurm accounting storage is disabled" >&2; exit 1; }
-        cat "$FAKE/accounts" """,
+        cat "$FAKE/accounts"; touch "$FAKE/asked" """,
     "scancel": """ask="$FAKE/requests/$$"; echo cancel "$@" > "$ask.new"; mv "$ask.new" "$ask"
         while [ -e "$ask" ]; do sleep 0.01; done""",
     "scontrol": """ask="$FAKE/requests/$$"; echo "$@" > "$ask.new"; mv "$ask.new" "$ask"

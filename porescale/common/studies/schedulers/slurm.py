@@ -147,7 +147,8 @@ class Call:
 
 
 def _state(job: Any) -> str:
-    """What the accounts say of a job."""
+    """What the accounts say of a job now; what they said before does not stand in where they are silent."""
+    job.watcher.clear()
     return str(job.get_info(mode="force").get("State") or "no state known")
 
 

@@ -162,7 +162,8 @@ def test_a_lost_job_of_an_unstable_run_is_queued_again_where_that_is_asked_for(t
     class Job:
         """It has vanished."""
 
-        job_id = "100"
+        def __init__(self) -> None:
+            self.job_id, self.watcher = "100", dict[str, str]()
 
         def get_info(self, mode: str) -> dict[str, str]:
             return {}
@@ -172,6 +173,18 @@ def test_a_lost_job_of_an_unstable_run_is_queued_again_where_that_is_asked_for(t
     here = scheduler.Call(None, of({}, str), None, [], {})  # type: ignore[arg-type]
     done = here._without_result(task, Job())
     assert (done and done.code, here.todo) == (code, [task] if again else [])
+
+
+def test_a_job_that_ran_and_vanishes_with_the_accounts_is_queued_again(cluster, sweep):
+    asked = cluster.folder / "asked"  # the accounts said RUNNING; from now on they say nothing
+    empty = cluster.folder / "empty"
+    cluster.once(under_way("beads=3"), empty.touch)
+    cluster.once(asked.exists, lambda: ((cluster.folder / "no accounts").touch(), cluster.lose("100"), empty.unlink()))
+    cluster.once(lambda: "101" in cluster.jobs, go)
+    code, said = sweep("3")
+    assert code == 0, said
+    assert "beads=3: job 100 is lost (no state known), queued again" in said
+    assert cluster.begun() == {"100": 1, "101": 1}
 
 
 def test_sbatch_that_fails_later_is_tried_again(cluster, sweep):
