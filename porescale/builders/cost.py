@@ -9,12 +9,13 @@ from porescale.common.core.machine import memory_bytes
 from porescale.common.duration.expected import BUILDING, FINISHING, RECORDING, STEPS, Work
 from porescale.lbm.lattice import row_length
 
-CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
-"""Rates that a run is first reckoned with (two cores, float64); how this machine differs is learnt from its runs."""
+CELLS_PER_SECOND, COUPLED_CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 60e6, 15e6
+"""Rates that a run is first reckoned with, of plain fluid, of fluid with grains, and of contacts; how this machine
+differs is learnt from its runs."""
 CALLS, COUPLED_CALLS = 5e-6, 45e-6
 """Seconds of a step that do not depend on its size, without and with coupling (measured on 2400 cells, 31 grains):
 without them a run of a small scene would make every machine look slow."""
-PHASES = {BUILDING: (0.5, 0.0, 2e-3, 0.0), RECORDING: (0.2, 0.01, 1e-5, 1e-7), FINISHING: (3.0, 0.02, 1e-5, 1e-7)}
+PHASES = {BUILDING: (0.5, 0.0, 2e-3, 0.0), RECORDING: (0.2, 0.05, 1e-5, 1e-7), FINISHING: (6.0, 0.12, 1e-5, 1e-7)}
 """Nominal seconds of what is no step: once, of each snapshot, and for each disc and each cell in it."""
 SNAPSHOT = 1000.0
 """Bytes of a snapshot besides its numbers."""
@@ -51,8 +52,9 @@ def snapshot_count(end: float, interval: float) -> int:
 def step_seconds(derived: Derived) -> float:
     """Seconds of a model step at the nominal rates."""
     cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
-    calls = COUPLED_CALLS if cells and derived.grain_count else CALLS
-    return calls + cells / CELLS_PER_SECOND + contact_seconds(derived)
+    if cells and derived.grain_count:
+        return COUPLED_CALLS + cells / COUPLED_CELLS_PER_SECOND + contact_seconds(derived)
+    return CALLS + cells / CELLS_PER_SECOND + contact_seconds(derived)
 
 
 def work(scene: Scene, derived: Derived, gpu: str = "") -> Work:
