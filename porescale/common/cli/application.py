@@ -27,8 +27,8 @@ OF_THE_MACHINE = (errno.ENOSPC, QUOTA, errno.EACCES, errno.EPERM, errno.EROFS, e
 
 
 GARBAGE = 50_000
-"""Objects after which Python looks for cycles of them that nothing refers to: imports make many that stay, and with 700,
-Python's own, a twelfth of the time that ``check`` takes is spent on looking."""
+"""Objects after which Python looks for cycles of them that nothing refers to: imports make many that stay, and with its
+own 700 a twelfth of the time that ``check`` takes is spent on looking."""
 
 PLAIN = {"²": "^2", "³": "^3", "±": "+-", "·": "*", "–": "-", "…": "...", "→": "->", "ν": "nu", "τ": "tau", "ρ": "rho"}
 """Signs of reports and messages as a terminal without them is given them."""
