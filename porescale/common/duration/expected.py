@@ -8,14 +8,16 @@ much slower than nominal this machine is.  Kernels count where they are not on d
 import contextlib
 import json
 import math
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 from typing import Any
 
+from porescale.common.compiled.ahead import cores
 from porescale.common.compiled.cache import USED, cache_root
-from porescale.common.compiled.jit import cache_folder
+from porescale.common.compiled.jit import cache_folder, threads
 from porescale.common.compiled.turns import TURNS
 from porescale.common.core.atomic import write_bytes
 from porescale.common.duration.quiet import Moment, moment, share
@@ -76,9 +78,15 @@ def expected(work: Work) -> Expected:
 
 
 def _like(work: Work) -> list[dict[str, Any]]:
-    """The runs of the same scene, or where there is none, of its kind."""
+    """The runs of the same scene on as many threads; where there is none, on others; and else, of its kind."""
     kind = [run for run in _runs() if run["kind"] == work.kind]
-    return [run for run in kind if run["scene"] == work.scene] or kind
+    scene = [run for run in kind if run["scene"] == work.scene]
+    return [run for run in scene if run["threads"] == _threads()] or scene or kind
+
+
+def _threads() -> int:
+    """Threads of kernels, all cores where none was called yet: numba takes long to import."""
+    return threads() if "numba" in sys.modules else cores()
 
 
 def _compiling(like: list[dict[str, Any]]) -> float:
@@ -99,8 +107,8 @@ def remember(work: Work, taken: Mapping[str, float], began: Moment) -> None:
     """
     slower = {phase: taken[phase] / work.seconds[phase] for phase in LEARNT if taken.get(phase, 0.0) > 0.0}
     now, kernels = moment(), [name for name in USED if name.endswith(KERNEL)] + [f"{it}{KERNEL}" for it in TURNS.kept]
-    run = {"scene": work.scene, "kind": work.kind, "slower": slower, "kernels": list(dict.fromkeys(kernels)),
-           "compiled": now.compiled - began.compiled,
+    run = {"scene": work.scene, "kind": work.kind, "threads": _threads(), "slower": slower,
+           "kernels": list(dict.fromkeys(kernels)), "compiled": now.compiled - began.compiled,
            "compiling": (now.compiling - began.compiling) * share(began, now)}  # fmt: skip
     with contextlib.suppress(OSError):  # no room or no right to write: the next check guesses again
         write_bytes(_file(), json.dumps([*_runs(), run][-KEPT:]).encode())
@@ -122,6 +130,7 @@ def _runs() -> list[dict[str, Any]]:
 _MADE_OF: dict[str, Callable[[Any], bool]] = {
     "scene": lambda it: isinstance(it, str),
     "kind": lambda it: isinstance(it, str),
+    "threads": lambda it: isinstance(it, int),
     "slower": lambda it: isinstance(it, dict) and all(_number(value) and value > 0 for value in it.values()),
     "kernels": lambda it: isinstance(it, list) and all(isinstance(name, str) for name in it),
     "compiled": lambda it: _number(it) and it >= 0,

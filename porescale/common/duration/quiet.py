@@ -15,6 +15,7 @@ import time as clock
 from pathlib import Path
 from typing import NamedTuple
 
+from porescale.common.compiled.ahead import cores
 from porescale.common.compiled.turns import TURNS
 
 SCHEDSTAT = Path("/proc/thread-self/schedstat")
@@ -69,6 +70,4 @@ def load_now() -> float:
     """
     if not hasattr(os, "getloadavg"):
         return 1.0
-    allowed = getattr(os, "sched_getaffinity", None)
-    cores = len(allowed(0)) if allowed else os.cpu_count() or 1
-    return max(1.0, (os.getloadavg()[0] + 1.0) / cores)
+    return max(1.0, (os.getloadavg()[0] + 1.0) / cores())

@@ -77,6 +77,15 @@ def test_a_run_of_the_same_scene_says_more_than_one_of_its_kind_and_another_kind
     assert not expected(work(kind="soil")).measured
 
 
+def test_a_run_on_as_many_threads_says_more_than_one_on_others(monkeypatch):
+    for threads, slower in ((1, 8.0), (2, 5.0)):
+        monkeypatch.setattr(module, "_threads", lambda threads=threads: threads)
+        ran(monkeypatch, slower=slower)
+    for threads, slower in ((1, 8.0), (2, 5.0), (4, 6.5)):
+        monkeypatch.setattr(module, "_threads", lambda threads=threads: threads)
+        assert expected(work()).seconds[STEPS] == pytest.approx(10.0 * slower, rel=1e-12)
+
+
 def test_kernels_count_where_they_are_not_on_disk(monkeypatch, machine):
     ran(monkeypatch, kernels=("cover-1", "sweep-2", "sweep-2"), compiled=2, compiling=30.0, load=4.0)
     ran(monkeypatch, kernels=("cover-1", "sweep-2"))
@@ -123,14 +132,17 @@ def test_a_run_that_cannot_be_noted_fails_nothing(monkeypatch, machine):
     assert not expected(work()).measured
 
 
+WHOLE = {"scene": "dam", "kind": "water", "threads": 2, "slower": {}, "kernels": [], "compiled": 0, "compiling": 0}
+
+
 @pytest.mark.parametrize(
     "spoiled",
     [
-        "nonsense", "3", "[3]", "[[]]", '[{"scene": "dam", "kind": "water"}]',
-        '[{"scene": "dam", "kind": "water", "slower": {"steps": -1}, "kernels": [], "compiled": 0, "compiling": 0}]',
-        '[{"scene": "dam", "kind": "water", "slower": {}, "kernels": [3], "compiled": 0, "compiling": 0}]',
-        '[{"scene": "dam", "kind": "water", "slower": {}, "kernels": [], "compiled": "x", "compiling": 0}]',
-        '[{"scene": "dam", "kind": "water", "slower": {}, "kernels": [], "compiled": 0, "compiling": NaN}]',
+        "nonsense", "3", "[3]", "[[]]", '[{"scene": "dam", "kind": "water"}]', *(
+            json.dumps([{**WHOLE, key: value}]) for key, value in {
+                "scene": None, "threads": "2", "slower": {STEPS: -1}, "kernels": [3], "compiled": "x",
+                "compiling": float("nan")}.items()
+        ),
     ],
 )  # fmt: skip
 def test_a_spoiled_note_is_a_guess(monkeypatch, machine, spoiled):
@@ -140,5 +152,6 @@ def test_a_spoiled_note_is_a_guess(monkeypatch, machine, spoiled):
     whole = file.read_text()
     file.write_text(spoiled)
     assert expected(work()) == guess
-    file.write_text(whole)  # the twin
-    assert expected(work()).measured
+    for sound in (whole, json.dumps([WHOLE])):  # the twin
+        file.write_text(sound)
+        assert expected(work()).measured

@@ -53,7 +53,7 @@ def test_a_thread_counts_for_itself():
 
 
 def test_a_busy_machine_is_one_on_which_others_want_its_cores(monkeypatch):
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
+    monkeypatch.setattr(quiet, "cores", lambda: 2)
     for load, factor in ((0.0, 1.0), (1.0, 1.0), (3.0, 2.0), (5.0, 3.0)):
         monkeypatch.setattr(os, "getloadavg", lambda load=load: (load, 9.0, 9.0), raising=False)
         assert load_now() == factor
