@@ -6,7 +6,7 @@ from porescale.builders.derive import Derived
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.machine import memory_bytes
-from porescale.common.duration.expected import BUILDING, FINISHING, RECORDING, STEPS, Work
+from porescale.common.duration.expected import BUILDING, COMPILING, FINISHING, RECORDING, STEPS, Work
 from porescale.lbm.lattice import row_length
 
 CELLS_PER_SECOND, COUPLED_CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 60e6, 15e6
@@ -17,6 +17,8 @@ CALLS, COUPLED_CALLS = 5e-6, 45e-6
 without them a run of a small scene would make every machine look slow."""
 PHASES = {BUILDING: (0.5, 0.0, 2e-3, 0.0), RECORDING: (0.2, 0.05, 1e-5, 1e-7), FINISHING: (6.0, 0.12, 1e-5, 1e-7)}
 """Nominal seconds of what is no step: once, of each snapshot, and for each disc and each cell in it."""
+KERNELS = 30.0
+"""Nominal seconds of compiling the kernels of fluid or of grains; with both it is twice that."""
 SNAPSHOT = 1000.0
 """Bytes of a snapshot besides its numbers."""
 ALWAYS = 2.0**27
@@ -61,7 +63,8 @@ def work(scene: Scene, derived: Derived, gpu: str = "") -> Work:
     """What a run of the scene has to do;  gpu : name of the GPU that steps its fluid, if one does."""
     cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
     snapshots = snapshot_count(scene.time.end, scene.output.snapshot_interval)
-    seconds = {STEPS: step_count(scene, derived) * step_seconds(derived)}
+    kernels = KERNELS * (1 + bool(cells and derived.grain_count))
+    seconds = {COMPILING: kernels, STEPS: step_count(scene, derived) * step_seconds(derived)}
     for phase, (once, each, disc, cell) in PHASES.items():
         many = 1 if phase == BUILDING else snapshots
         seconds[phase] = once + (each + disc * derived.grain_count + cell * cells) * many

@@ -12,7 +12,7 @@ import porescale
 from porescale import Scene
 from porescale.cli.main import PACKAGE
 from porescale.common.core.errors import InputError
-from porescale.common.duration.expected import LEARNT, Work
+from porescale.common.duration.expected import COMPILING, LEARNT, Work
 from porescale.common.record.model import Model, Snapshot
 from porescale.common.schema.messages import every_key
 from porescale.common.schema.sections import LEVELS, load, scene_as_dict
@@ -165,7 +165,8 @@ def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch,
         raise Asked(options["overwrite"])
 
     monkeypatch.setattr("porescale.common.record.drive.drive", asked)
-    monkeypatch.setattr("porescale.builders.cost.work", lambda *_: Work("", "", dict.fromkeys(LEARNT, 1.0)))
+    work = Work("", "", dict.fromkeys((COMPILING, *LEARNT), 1.0))
+    monkeypatch.setattr("porescale.builders.cost.work", lambda *_: work)
     model = SimpleNamespace(derived=None)
     for part in (porescale.cli.main.PACKAGE, continuum_sph.cli.PACKAGE):
         (tmp_path / "scene.toml").write_text(part.template(), encoding="utf-8")

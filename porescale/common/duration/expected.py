@@ -29,8 +29,6 @@ LEARNT = BUILDING, STEPS, RECORDING, FINISHING
 snapshots and checkpoints;  finishing: pictures, film and page."""
 BEGIN = 2.0
 """Seconds until a scene is read and all is imported."""
-KERNELS = 50.0
-"""Seconds of compiling all kernels of a scene that was never run."""
 LAST, KEPT = 5, 50
 """Runs whose median counts, and runs that are remembered."""
 NAME, KERNEL = "runs.json", ".nbc"
@@ -41,7 +39,8 @@ GUESS = "a guess until this machine has done such a run"
 class Work:
     """What a run has to do.
 
-    scene : its name;  kind : of scenes whose phases cost alike;  seconds : of each phase in `LEARNT`, at nominal rates.
+    scene : its name;  kind : of scenes whose phases cost alike;  seconds : of compiling all its kernels and of each
+    phase in `LEARNT`, at nominal rates.
     """
 
     scene: str
@@ -70,7 +69,7 @@ class Expected:
 def expected(work: Work) -> Expected:
     """What a run will take."""
     like = _like(work)
-    seconds = {START: BEGIN, COMPILING: _compiling(like)}
+    seconds = {START: BEGIN, COMPILING: _compiling(like, work.seconds[COMPILING])}
     for phase in LEARNT:
         slower = [run["slower"][phase] for run in like if phase in run["slower"]][-LAST:]
         seconds[phase] = work.seconds[phase] * (median(slower) if slower else 1.0)
@@ -89,14 +88,14 @@ def _threads() -> int:
     return threads() if "numba" in sys.modules else cores()
 
 
-def _compiling(like: list[dict[str, Any]]) -> float:
+def _compiling(like: list[dict[str, Any]], nominal: float) -> float:
     """Seconds of compiling what is not on disk: as a share of the kernels of the run that compiled most."""
     most = max(reversed(like), key=lambda run: run["compiled"], default=None)
     if most is None:
-        return KERNELS
+        return nominal
     folder = cache_folder()
     missing = sum(not (folder / name).exists() for name in like[-1]["kernels"])
-    seconds = most["compiling"] if most["compiled"] else KERNELS
+    seconds = most["compiling"] if most["compiled"] else nominal
     return float(seconds) * missing / max(len(like[-1]["kernels"]), 1)
 
 

@@ -94,9 +94,9 @@ class Watch:
     def left(self) -> float | None:
         """Seconds left, all that follows the steps included; None while unknown, and once that lasts too long.
 
-        Steps are expected to go on at their mean speed, rows, snapshots and checkpoints included, since kernels were
-        compiled; what follows, at the share of a core that they got.  Time in which the process was stopped does not
-        count.
+        Steps are expected to go on at their mean speed, rows, snapshots and checkpoints included, and what follows at
+        the share of a core that they got.  The first blocks do not count, nor compiling, nor time in which the process
+        was stopped.
         """
         if self.running is None:
             return None
@@ -107,7 +107,7 @@ class Watch:
             return left if left > 0.0 else None
         if self.time <= self.start:
             return None
-        spent = clock.perf_counter() - since.wall - self.stopped
+        spent = clock.perf_counter() - since.wall - self.stopped - (TURNS.seconds - since.compiling)
         return spent * (self.end - self.time) / (self.time - self.start) + finish
 
     def line(self) -> str:

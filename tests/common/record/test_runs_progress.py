@@ -109,6 +109,26 @@ def test_time_left_counts_from_the_first_step_not_from_the_compiling(monkeypatch
     assert watch.left() == pytest.approx(4.9)
 
 
+def test_what_is_compiled_later_is_no_pace_of_steps(monkeypatch):
+    # Blocks of 0.1 s; the kernels of the first row, at the tenth block, take 20 s.
+    now = [0.0]
+    monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(TURNS, "seconds", 0.0)
+    watch = Watch("dam", 0.0, 10.0, quiet=True)
+    for k in range(1, 101):
+        now[0] += 0.1
+        if k == 10:
+            now[0] += 20.0
+            monkeypatch.setattr(TURNS, "seconds", 20.0)
+        watch.update(k, 0.1 * k)
+        if k > UNCOUNTED:
+            assert watch.left() == pytest.approx(10.0 - 0.1 * k, abs=1e-9)
+    # The twin that must fail: they count.
+    monkeypatch.setattr(TURNS, "seconds", 0.0)
+    watch.time = 5.0
+    assert watch.left() > 10.0
+
+
 @pytest.mark.parametrize(("share", "stopped"), [(0.0, 5.0), (0.5, 0.0)])  # the second is the twin: a busy machine
 def test_a_wait_that_lasts_too_long_without_the_processor_is_one_in_which_the_process_was_stopped(
     monkeypatch, share, stopped
