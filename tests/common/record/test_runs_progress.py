@@ -7,10 +7,17 @@ import pytest
 from rich.console import Console
 
 from porescale.common.compiled.turns import TURNS
+from porescale.common.duration import quiet
 from porescale.common.record import progress
 from porescale.common.record.cost import UNCOUNTED
 from porescale.common.record.progress import STARTING, Watch, duration
 from tests.reference.waiting import awaited
+
+
+@pytest.fixture(autouse=True)
+def alone(monkeypatch):
+    """No load that the tests do not make."""
+    monkeypatch.setattr(quiet, "scheduled", lambda: (1.0, 0.0))
 
 
 def watched(monkeypatch, terminal=False) -> str:
@@ -144,10 +151,24 @@ def test_time_left_is_right_within_a_tenth_from_a_tenth_of_the_run_on(monkeypatc
     assert without is None
 
 
+def test_what_follows_the_steps_takes_as_much_longer_beside_others_as_they_did(monkeypatch):
+    # A third of a core: a block of 0.1 s takes 0.3 s, and the 8 s that follow take 24 s.
+    now = [0.0]
+    monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(quiet, "scheduled", lambda: (now[0] / 3.0, 2.0 * now[0] / 3.0))
+    ends = [0.3 * k for k in range(301)]
+    assert worst(Watch("dam", 0.0, 3.0, quiet=True, finish=8.0), now, ends, 24.0)[0] < 0.01
+    # The twin that must fail: what is left is said as of a quiet machine.
+    monkeypatch.setattr(quiet, "scheduled", lambda: (1.0, 0.0))
+    now[0] = 0.0
+    assert worst(Watch("dam", 0.0, 3.0, quiet=True, finish=8.0), now, ends, 24.0)[0] > 0.5
+
+
 def test_what_takes_longer_than_expected_after_the_steps_is_not_said_to_be_over(monkeypatch):
     now = [0.0]
     monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
     watch = Watch("dam", 0.0, 3.0, quiet=True, finish=8.0)
+    watch.update(1, 0.1)
     watch.enter("writing pictures and film")
     now[0] = 7.0
     assert watch.line().endswith(", 1 s left")  # the twin
