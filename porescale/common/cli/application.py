@@ -1,5 +1,6 @@
 """The command line that every package has, and how a command ends."""
 
+import atexit
 import codecs
 import errno
 import gc
@@ -67,6 +68,7 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
     printed in one line each on stderr; any other exception is a bug of the package and keeps its traceback.
     """
     gc.set_threshold(GARBAGE)
+    atexit.register(gc.freeze)  # nor need it look at what stays once more before it ends: a sixth
     _print_anywhere()
     try:
         with printed():
