@@ -192,8 +192,8 @@ def couette_row() -> Measured:
 @VALIDATIONS.row(
     "lbm.begun_couette",
     source="exact series of a wall that starts to move between two walls 30 cells apart, after 0.1 H²/nu",
-    because="of the lid's speed; populations forget in tau = 3 steps of the 1080 of H²/nu, and half as fast as the wall "
-    "moves the profile follows: 3/1080 of a start that is late; as much is allowed from there",
+    because="of the lid's speed; populations forget in tau = 3 steps of the 1080 of H²/nu, and half as fast as the wall"
+    " moves the profile follows: 3/1080 of a start that is late; as much is allowed from there",
     tolerance=3e-3,
 )
 def begun_couette_row() -> Measured:
