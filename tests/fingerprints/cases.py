@@ -79,9 +79,9 @@ NO_SUBJECT = {
     "column_collapse_table1/implied.py": "draws the numbers of a refusal",
     "column_collapse_table1/scene.toml": "is there to be refused",
     "collapsing_water_column/trade.toml": "of a study, not a scene",
-    "column_collapse/lambda.py": "runs the scene beside it",
+    "column_collapse/lambda.py": "reads a sweep of the scene beside it",
     "column_collapse/trade.toml": "of a study, not a scene",
-    "loose_and_dense_collapse/compare.py": "runs the scene beside it",
+    "loose_and_dense_collapse/compare.py": "reads a sweep of the scene beside it",
     "micro_to_macro/material.toml": "read by ground.toml",
     "own_law/laws.py": "named by the scene beside it",
 }
