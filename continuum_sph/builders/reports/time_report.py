@@ -5,7 +5,7 @@ from porescale.common.api.report import Report, report_time
 from porescale.common.duration.expected import BUILDING, COMPILING, FINISHING, RECORDING, STEPS, Work, expected
 from porescale.common.record.schedule import recorded
 
-PHASES = {BUILDING: (0.5, 0.0, 1e-5), RECORDING: (0.2, 0.01, 1e-6), FINISHING: (3.0, 0.1, 2e-6)}
+PHASES = {BUILDING: (0.5, 0.0, 1e-5), RECORDING: (0.2, 0.06, 1e-6), FINISHING: (3.0, 0.07, 2e-6)}
 """Nominal seconds of what is no step: once, of each snapshot, and for each particle in it."""
 KERNELS = 25.0
 """Nominal seconds of compiling all kernels of a scene."""
