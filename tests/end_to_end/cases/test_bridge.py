@@ -1,5 +1,6 @@
 """The case from grains to the continuum: how both scales are compared, and the command that does it."""
 
+import json
 import math
 from types import ModuleType
 
@@ -7,7 +8,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from tests.reference.folders import script
+from porescale.output.case import expected
+from tests.reference.folders import CASES, script
 
 SETTLED = np.array([1.0, 1.1, 0.9, 1.05, 0.95, 1.0, 1.02, 0.98])
 """Eight packings, of mean 1."""
@@ -80,3 +82,13 @@ def test_the_command_compares_and_writes_its_table_on_a_tiny_set_up(case):
     late = [line for line in lines if line.startswith("| time")]
     assert late
     assert all(line.endswith("| no |") for line in late)
+
+
+def test_the_record_agrees_in_the_front_with_little_damping_and_not_with_the_usual():
+    folder = CASES / "micro_to_macro"
+    numbers = json.loads((folder / "recorded.json").read_text(encoding="utf-8"))["numbers"]
+    name = "front of soil with little damping over that of grains"
+    (row,) = [it for it in expected(folder) if it["name"] == name]
+    assert abs(numbers[name] - row["value"]) < row["tolerance"]
+    usual = numbers["front of fallen soil"] / numbers["front of fallen grains"]
+    assert abs(usual - row["value"]) > row["tolerance"]  # the check that must fail

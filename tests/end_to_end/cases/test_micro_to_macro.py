@@ -12,7 +12,7 @@ from porescale.output.case import expected
 from tests.reference.folders import CASES, script
 
 CASE = CASES / "micro_to_macro"
-FINEST = 18  # rows of soil over the depth of the column
+FINEST = 12  # rows of soil over the depth of the column
 
 
 @pytest.fixture(scope="module")
