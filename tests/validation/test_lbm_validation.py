@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from porescale.lbm.boundary import velocity
 from porescale.validation.lbm import cavity, operators, own_forces
 from porescale.validation.lbm import channels as lab
 from porescale.validation.lbm import open_sides as opened
@@ -64,6 +65,23 @@ def test_central_moments_shift_the_walls_of_a_pressure_channel():
     off = np.abs(found[:, 10] - parabola).max()
     assert off == pytest.approx((16 / 12 - 1) / 10**2, rel=0.01)
     assert off > 30 * tolerance("lbm.poiseuille_between_pressures")
+
+
+def test_an_inlet_that_gives_a_diagonal_its_own_cells_velocity_slides_along_itself(monkeypatch):
+    # By 1/2 du/dy, 2/n of the peak beside a wall: first order, where means of two cells leave second.
+    def alone(bounds, side, link):
+        own = bounds.place(side, link)
+        return (own, own), 1.0
+
+    monkeypatch.setattr(velocity, "_joined", alone)
+    errors = [opened.inlet(n) for n in (8, 16)]
+    assert np.log2(errors[0] / errors[1]) < 1
+    assert 16**2 * errors[1] > 2 * tolerance("lbm.parabola_from_an_inlet")
+
+
+def test_the_error_of_an_inlet_falls_at_second_order():
+    # 1.66: corner links, the larger part, are one cell each, whose rings fall off as 1/r: a logarithm of n off.
+    assert np.log2(opened.inlet(8) / opened.inlet(16)) > 1.66
 
 
 def test_a_plug_that_leaves_a_millionth_slower_is_told_apart():

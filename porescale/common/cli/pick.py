@@ -181,6 +181,7 @@ class _Record:
         opened = self._opened(point, *(f"{key}={value!r}" for key, value in each.items()))
         with tempfile.TemporaryDirectory() as made:
             model, before = self.package.build(opened.scene), time.perf_counter()
+            model.building = None  # a try is no run that others are expected to be like
             card = card_of(self.package, opened)
             self.package.drive(model, Path(made) / "run", opened.scene, card=card, resume=False, quiet=True)
             return float(time.perf_counter() - before)
