@@ -73,7 +73,7 @@ class Compared:
     def cells(self) -> list[str]:
         """A row of the table with HEAD."""
         size = abs(float(np.mean(self.grains)))
-        digits = max(0, 2 - math.floor(math.log10(size))) if size > 0.0 else 3
+        digits = max(0, 3 - math.floor(math.log10(size))) if size > 0.0 else 3
 
         def text(value: float) -> str:
             """A number with the digits of this quantity."""

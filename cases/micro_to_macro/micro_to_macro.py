@@ -27,7 +27,7 @@ HERE = Path(__file__).resolve().parent
 MIDDLE = 12  # rows of soil whose angle of friction is varied
 LITTLE = "soil.numerics.damping=0.05"
 """A quarter of the damping that soil has if nothing is said."""
-FLOW_ROWS = (5, 10, 20)
+FLOW_ROWS = (10, 20, 40)
 GRADIENT = 0.2
 SEEN: dict[str, tuple[str, Callable[[Fall], float]]] = {
     "front, 95 % of the mass behind it": ("m", Fall.front),
