@@ -21,7 +21,7 @@ import porescale as ps
 from continuum_sph.builders import material_of
 from continuum_sph.validation.soil import element as lab
 from porescale import GRAVITY, Floats
-from porescale.output import conclude, options, stage
+from porescale.output import conclude, options
 
 HERE = Path(__file__).resolve().parent
 MIDDLE = 12  # rows of soil whose angle of friction is varied
@@ -162,7 +162,9 @@ def table(flow: Sequence[Compared], columns: Columns) -> list[str]:
 
 def draw(flow: Sequence[Compared], columns: Columns, rows: Floats) -> Figure:
     """Flow, strength, quantities of the columns over the spacing, and their way; bars are intervals at 95 %."""
-    figure, panels = stage(7, 17.0, 3.2)
+    figure = Figure(figsize=(12.0, 6.0), layout="constrained")
+    panels = list(figure.subplots(2, 4).flat)
+    panels.pop().axis("off")
     for at, it in enumerate(flow):
         scale(panels[0], it, at, SOIL, "continuum" if not at else None)
     panels[0].set(xticks=[0, 1], xlim=(-0.6, 1.8), title="q / (k i)")
