@@ -177,7 +177,7 @@ HALF_DEGREE = math.radians(0.5) * (1.0 + TAN_PHI**2) / TAN_PHI
     "(Davis 1968), and goes with g (sin β - 0.5 cos β); from a strewn lattice of 20, 40 and 80 rows, slope of 30°",
     because="half a degree of slope, to which slopes are read from pictures.  What is left is half of the row at "
     "the floor, which is held, and upright columns that rotate side by side: they are weaker (de Josselin de Jong, "
-    "Géotechnique 21 (1971) 155: down to sin φ cos φ/(1 + sin² φ) = 0.35), and the finer the soil, the easier they form",
+    "Géotechnique 21 (1971) 155: down to sin φ cos φ/(1 + sin² φ) = 0.35), and form the easier the finer the soil",
     tolerance=HALF_DEGREE,
     slow=True,
 )
