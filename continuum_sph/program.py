@@ -10,11 +10,11 @@ from porescale.common.api.run_scene import drive_scene
 from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
+    from continuum_sph.builders.simulation import Simulation
     from continuum_sph.scene.sections import Scene
     from porescale.common.api.report import Report
     from porescale.common.pictures.look import Look
     from porescale.common.record.drive import Outcome
-    from porescale.common.record.model import Model
     from porescale.common.record.open_run import Run
 
 FORMERLY = {"numerics": {"noise_floor": 0.0}}
@@ -28,14 +28,18 @@ def scene_type() -> type[Scene]:
     return Scene
 
 
-def build(scene: Scene) -> Model:
-    """The simulation of a scene that passes `report`."""
+def build(scene: Scene) -> Simulation:
+    """The simulation of a scene that passes `report`, which knows how long it took to build."""
     from continuum_sph.builders.simulation import Simulation
+    from porescale.common.duration.quiet import moment
 
-    return Simulation(scene)
+    began = moment()
+    model = Simulation(scene)
+    model.building = began, moment()
+    return model
 
 
-def drive(model: Model, folder: Path, scene: Scene, **options: Any) -> Outcome:
+def drive(model: Simulation, folder: Path, scene: Scene, **options: Any) -> Outcome:
     """Run the model to the scene's end and write the run folder; options as of `Program`."""
     from porescale.common.page.page import write_report
 
@@ -44,7 +48,9 @@ def drive(model: Model, folder: Path, scene: Scene, **options: Any) -> Outcome:
         if show(finished) and scene.output.report:
             write_report(finished, PROGRAM)
 
-    return drive_scene(model, folder, scene, after=after, formerly=FORMERLY, **options)
+    work = report(scene).work
+    assert work is not None
+    return drive_scene(model, folder, scene, after=after, work=work, formerly=FORMERLY, **options)
 
 
 def report(scene: Scene) -> Report:

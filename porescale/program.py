@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,13 +33,13 @@ def report(scene: Scene) -> Report:
 
 
 def build(scene: Scene) -> Simulation:
-    """The simulation of a scene, which knows how long it took to build, and what was compiled before."""
+    """The simulation of a scene, which knows how long it took to build."""
     from porescale.builders.build import build as build_scene
-    from porescale.common.compiled.turns import TURNS
+    from porescale.common.duration.quiet import moment
 
-    began, compiled = clock.perf_counter(), (len(TURNS.kept), TURNS.seconds)
+    began = moment()
     model = build_scene(scene)
-    model.built_in, model.compiled_before = clock.perf_counter() - began - (TURNS.seconds - compiled[1]), compiled
+    model.building = began, moment()
     return model
 
 
@@ -55,7 +54,7 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.analysis.bed_permeability import write_permeability
     from porescale.builders.checks.device import gpu_of
-    from porescale.builders.cost import BUILDING, FINISHING, RECORDING, expected, remember, remember_run, snapshot_count
+    from porescale.builders.cost import work
     from porescale.common.api.run_scene import drive_scene
     from porescale.common.page.page import write_report
     from porescale.common.record.open_run import open_run
@@ -67,18 +66,10 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         if pictures and scene.output.report:
             write_report(finished, PROGRAM)
 
-    steps = max(1, round(scene.time.end / model.derived.model_step))
-    count = snapshot_count(scene.time.end, scene.output.snapshot_interval)
-    finish = expected(model.derived, steps, count).finishing
     gpu, driver = gpu_of(scene)
     device = {"name": gpu, "driver": driver} if gpu else {"name": "cpu"}
     card = {**card, "seeds": seeds(scene), "device": device}
-    outcome = drive_scene(model, folder, scene, card=card, after=after, finish=finish, **options)
-    remember(model.derived, outcome.steps_per_second, gpu)
-    if outcome.steps_per_second and not gpu and not options.get("resume"):
-        taken = {BUILDING: model.built_in, RECORDING: outcome.recording, FINISHING: outcome.finishing}
-        remember_run(model.derived, count, taken, model.compiled_before)
-    return outcome
+    return drive_scene(model, folder, scene, card=card, after=after, work=work(scene, model.derived, gpu), **options)
 
 
 def seeds(scene: Scene) -> dict[str, int]:

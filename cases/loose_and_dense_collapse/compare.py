@@ -1,16 +1,14 @@
-"""Dense, medium and loose columns over several packings, beside the experiment: compare.json, compare.png, a table.
+"""Dense, medium and loose columns over several packings, beside the experiment: compare.png, a table.
 
-    python cases/loose_and_dense_collapse/compare.py --packings 3
+    porescale sweep cases/loose_and_dense_collapse cases/loose_and_dense_collapse/beds.csv --repeat 3
+    python cases/loose_and_dense_collapse/compare.py runs/loose_and_dense_collapse_sweep --write
 
-Every run is kept in the folder with its commit, so that a call that was stopped goes on; runs of several commits are
-refused.  Lengths are over the column's length,
-pressures over its buoyant weight on the base, times over sqrt(H/g), H its height.
+Reads the finished runs of the sweep, which are of one commit.  Lengths are over the column's length, pressures over
+its buoyant weight on the base, times over sqrt(H/g), H its height.
 """
 
 import argparse
 import datetime
-import json
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -21,16 +19,8 @@ from matplotlib.figure import Figure
 import porescale as ps
 
 HERE = Path(__file__).resolve().parent
-MADE: dict[str, dict[str, Any]] = {
-    "dense": {},
-    "medium": {"grains.packing.settling_friction": 1.0},
-    "loose": {"grains.packing.settle": False},
-}
-"""The three beds, by what each changes in the scene."""
 COLOURS = {"dense": "tab:blue", "medium": "tab:green", "loose": "tab:red"}
 LENGTH = 0.024  # m, of the column
-BINS = 48  # of the final shape, a column of two diameters each
-EVERY = 1 / 400  # s between rows
 SMOOTH = 20  # rows, of the pore pressure: 0.05 s, ten times what sound takes through the column
 HYDROSTATIC = 1000.0 * ps.GRAVITY * (0.026 - 0.002)  # Pa, at the probe
 
@@ -58,34 +48,29 @@ EXPERIMENT: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 LIQUID, BEADS = 1010.0, 2500.0  # kg/m3
 
-
-def commit() -> str:
-    """Eight digits of the commit of the tree that this script lies in, with a + where files have changed since; ""
-    outside of one."""
-    words = ["git", "-C", str(HERE), "describe", "--always", "--exclude=*", "--abbrev=8", "--dirty=+"]
-    try:
-        return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
-    except (OSError, subprocess.SubprocessError):
-        return ""
+Beds = dict[str, list[dict[str, Any]]]
+"""Runs by bed: dense, medium, loose."""
 
 
-def run(made: str, seed: int) -> dict[str, Any]:
-    """One column: its numbers at the start, rows of time, front, height and pore pressure, and its shape at the end."""
-    scene = ps.load(HERE / "scene.toml").with_({**MADE[made], "grains.packing.seed": seed})
-    sim, rows = ps.build(scene), []
-    steps = round(EVERY / sim.step_seconds)
-    fraction = 1.0 - next(value for name, value in sim.tables()["regions"].items() if "porosity" in name)
-    while True:
-        series, probe = sim.series(), sim.tables()["probes"]
-        pressure = next(value for name, value in probe.items() if "mean pressure" in name)
-        rows.append([series["time (s)"], series["front (m)"], series["highest grain (m)"], pressure])
-        if sim.time >= scene.time.end - 0.5 * EVERY:
-            break
-        sim.advance(steps)
-    tops = np.zeros(BINS)
-    columns = np.minimum((sim.positions[:, 0] / scene.domain.width * BINS).astype(int), BINS - 1)
-    np.maximum.at(tops, columns, sim.positions[:, 1] + sim.radii)
-    return {"fraction": float(fraction), "rows": np.array(rows).tolist(), "tops": tops.tolist()}
+def read(folder: Path) -> tuple[Beds, set[str]]:
+    """The finished runs of a sweep, by bed: numbers at the start, rows of time, front, height and pore pressure, shape
+    at the end; and the commits that they are of."""
+    beds: Beds = {}
+    commits = set()
+    for path in sorted(it.parent for it in folder.glob("[!.]*/card.json")):
+        run = ps.open_run(path)
+        if run.outcome != "finished":
+            continue
+        packing = run.card["scene"]["grains"]["packing"]
+        made = "loose" if not packing["settle"] else "medium" if packing["settling_friction"] else "dense"
+        porosity = next(values for name, values in run.table("regions").items() if "porosity" in name)
+        pressure = next(values for name, values in run.table("probes").items() if "mean pressure" in name)
+        series = [run.series[name] for name in ("time (s)", "front (m)", "highest grain (m)")]
+        profile = {float(name.split()[4]): value[-1] for name, value in run.table("profile").items() if " x = " in name}
+        one = {"fraction": 1.0 - float(porosity[0]), "rows": np.array([*series, pressure]).T, "profile": profile}
+        beds.setdefault(made, []).append(one)
+        commits.add(run.commit)
+    return beds, commits
 
 
 def numbers(one: dict[str, Any]) -> dict[str, float]:
@@ -126,19 +111,18 @@ def scales(it: dict[str, Any]) -> tuple[float, float]:
     return (BEADS - LIQUID) * ps.GRAVITY * it["fraction"] * height, float(np.sqrt(height / ps.GRAVITY))
 
 
-def draw(runs: dict[str, list[dict[str, Any]]], path: Path) -> None:
+def draw(runs: Beds, path: Path) -> None:
     """Front and pore pressure over time, and shapes at the end, with the experiment as circles."""
     figure = Figure(figsize=(11, 7.5), layout="constrained")
     axes: list[Axes] = [figure.add_subplot(2, 2, k) for k in (1, 2)] + [figure.add_subplot(2, 1, 2)]
-    for made, many in runs.items():
+    for made, many in sorted(runs.items()):
         for k, one in enumerate(many):
             it, label = numbers(one), f"{made}, {one['fraction']:.3f}" if k == 0 else None
             time, front, _, pressure = np.array(one["rows"]).T
             line = {"color": COLOURS[made], "lw": 1.0, "label": label}
             axes[0].plot(time / it["fall"], front / LENGTH, **line)
             axes[1].plot(time / it["fall"], (pressure - HYDROSTATIC) / it["weight"], **line)
-            places = (np.arange(BINS) + 0.5) / BINS * 0.096 / LENGTH
-            axes[2].plot(places, np.array(one["tops"]) / LENGTH, **line)
+            axes[2].plot(*(np.array([*one["profile"].items()]).T / LENGTH), **line)
         if made in EXPERIMENT:
             it, hollow = EXPERIMENT[made], {"color": COLOURS[made], "marker": "o", "mfc": "none", "ls": "none"}
             weight, fall = scales(it)
@@ -171,19 +155,11 @@ def spread(values: Any) -> str:
     return f"{found.mean():.3g}" + (f" ± {found.std(ddof=1):.1g}" if len(found) > 1 else "")
 
 
-def commit_of(runs: dict[str, list[dict[str, Any]]]) -> str:
-    """The one commit that all runs were made at, "" where not known; ends the script where they are of several."""
-    commits = sorted({one.get("commit", "") for many in runs.values() for one in many})
-    if len(commits) > 1:
-        raise SystemExit(f"runs of several commits, {', '.join(it or 'unknown' for it in commits)}: not mixed")
-    return commits[0] if commits else ""
-
-
-def table(runs: dict[str, list[dict[str, Any]]]) -> list[str]:
+def table(runs: Beds) -> list[str]:
     """Lines of a table: means over packings with the deviation of one, beside the experiment."""
     names = ("solid fraction", "pore pressure", "half a length", "run-out", "height")
     lines = ["| | packings | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
-    for made, many in runs.items():
+    for made, many in sorted(runs.items()):
         found = {name: np.array([numbers(one)[name] for one in many]) for name in names}
         cells = [spread(values) for values in found.values()]
         lines.append(f"| {made} | {len(many)} | " + " | ".join(cells) + " |")
@@ -192,42 +168,31 @@ def table(runs: dict[str, list[dict[str, Any]]]) -> list[str]:
     return lines
 
 
-def write(runs: dict[str, list[dict[str, Any]]]) -> None:
+def write(runs: Beds, commit: str) -> None:
     """Picture and table, with date and commit, into this folder: between the marks of the README."""
-    found = commit_of(runs)
     draw(runs, HERE / "compare.png")
     readme = HERE / "README.md"
     head, _, rest = readme.read_text(encoding="utf-8").partition("<!-- compare -->")
     tail = rest.partition("<!-- end of compare -->")[2]
-    at = f" at commit {found}" if found else ""
+    at = f" at commit {commit}" if commit else ""
     made = f"Made on {datetime.date.today().isoformat()}{at} by `compare.py`, quality draft."
     block = "\n".join(["<!-- compare -->", *table(runs), "", made, "<!-- end of compare -->"])
     readme.write_text(head + block + tail, encoding="utf-8")
 
 
 def main() -> None:
-    """Run what is not there yet, and write the files."""
+    """Write the picture, print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--packings", type=int, default=3, help="of each bed")
-    parser.add_argument("--out", type=Path, default=Path("runs/loose_and_dense_collapse_compare"), help="folder")
-    parser.add_argument("--kept", action="store_true", help="run none, show what is there")
+    parser.add_argument("folder", type=Path, help="of the sweep")
     parser.add_argument("--write", action="store_true", help="picture and table into the README of the case")
     asked = parser.parse_args()
-    asked.out.mkdir(parents=True, exist_ok=True)
-    runs: dict[str, list[dict[str, Any]]] = {made: [] for made in MADE}
-    for seed in range(1, asked.packings + 1):
-        for made, many in runs.items():
-            file = asked.out / f"{made}-{seed}.json"
-            if not file.exists() and not asked.kept:
-                file.write_text(json.dumps({"commit": commit()} | run(made, seed)), encoding="utf-8")
-                print(f"{made}, packing {seed}: done", flush=True)
-            if file.exists():
-                many.append(json.loads(file.read_text(encoding="utf-8")))
-    runs = {made: many for made, many in runs.items() if many}
-    commit_of(runs)
-    draw(runs, asked.out / "compare.png")
+    runs, commits = read(asked.folder)
+    if len(commits) != 1:
+        raise SystemExit(f"{asked.folder}: finished runs of {len(commits)} commits, where one is needed")
     if asked.write:
-        write(runs)
+        write(runs, *commits)
+    else:
+        draw(runs, asked.folder / "compare.png")
     print("\n".join(table(runs)))
 
 

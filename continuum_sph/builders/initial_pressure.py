@@ -6,8 +6,6 @@ tank as sound and rings there.  The pressure that fluids without compressibility
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
-from scipy.sparse.linalg import spsolve
 
 from porescale.common.core.types import Floats
 
@@ -64,6 +62,9 @@ def lattice_pressure(
         diagonal[0] *= 2.0
     index = np.arange(len(x))
     values, i, j = (np.concatenate(parts) for parts in zip((diagonal, index, index), *entries, strict=True))
+    from scipy.sparse import coo_array, csr_array  # takes longer to import than a scene to be judged
+    from scipy.sparse.linalg import spsolve
+
     pressure: Floats = spsolve(csr_array(coo_array((values, (i, j)), shape=(len(x), len(x)))), right)
     if closed:
         pressure += 0.5 * gravity * spacing * density[top].mean() - pressure[top].mean()

@@ -24,7 +24,6 @@ Kernels round off the root of the tip: the flow is that of a sheet ROUNDED spaci
 """
 
 import numpy as np
-from scipy.special import ellipe, ellipk
 
 ROUNDED = 0.15
 """Spacings: 0.08 to 0.25 for s/T from 0.9 to 0.2, at 20 and 40 rows, h of 1.3 spacings."""
@@ -37,12 +36,16 @@ def modulus(share: float) -> float:
 
 def discharge(share: float) -> float:
     """q/(k h) under a sheet to the depth ``share`` = s/T."""
+    from scipy.special import ellipk  # takes longer to import than a scene to be judged
+
     m = modulus(share)
     return float(ellipk(1.0 - m) / (2.0 * ellipk(m)))
 
 
 def exit_gradient(share: float) -> float:
     """i_E T/h beside a sheet to the depth ``share`` = s/T."""
+    from scipy.special import ellipk
+
     m = modulus(share)
     return float(np.pi / (4.0 * ellipk(m) * m**0.5))
 
@@ -55,6 +58,8 @@ def longer(share: float, rows: float) -> float:
 
 def shorter(share: float) -> float:
     """By how much less that is for the exit gradient, in spacings, κ."""
+    from scipy.special import ellipe, ellipk
+
     m = modulus(share)
     return float(ellipk(m) / ellipe(m) * (1.0 - m) / np.pi)
 

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
 
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.water.smoothing import CUBIC, kernel_value
@@ -102,6 +101,8 @@ class Outside:
 
     def kinds(self, free: NDArray[np.bool_], time: float) -> None:
         """Set the kinds of places, of which those ``free`` (k,) of soil are known."""
+        from scipy.ndimage import label  # takes longer to import than a scene to be judged
+
         x, places = self.x, self.places
         places[:, KIND] = np.where(free, AIR, COVERED)
         places[:, LEVEL] = 0.0

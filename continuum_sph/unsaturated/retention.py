@@ -21,7 +21,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from porescale.common.compiled.jit import inline
 from porescale.common.core.errors import Fault, InputError
@@ -120,6 +119,8 @@ class VanGenuchten:
 
     def _end(self, farthest: float, *, wet: bool) -> float:
         """S_e, within ``farthest`` of its wet or of its dry end, where the curve is as steep as the water is stiff."""
+        from scipy.optimize import brentq  # takes longer to import than a scene to be judged
+
         first, last = math.log(LEAST), math.log(farthest)
         if self.slope(_place(first, wet=wet)) <= self.stiffness:
             return _place(first, wet=wet)

@@ -25,7 +25,7 @@ from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
-from porescale.dem.sanity import WORST_TRAVEL
+from porescale.dem.sanity import WORST_OF_TRAVELLING_CORNERS, WORST_TRAVEL
 from porescale.dem.timestep import SAFETY, packing_limit, stable_step
 from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.bodies.gate import Gate
@@ -105,7 +105,8 @@ def derive(scene: Scene) -> Derived:
         if step > travel:
             warnings.append(
                 f"contact.step = {step:.3g} s: at {speed:.3g} m/s, which is to be expected, a grain moves more than "
-                f"{WORST_TRAVEL:g} of the smallest radius in it, where a run stops; {SAFETY * travel:.2g} s is safe"
+                f"{WORST_TRAVEL:g} of the smallest radius in it, or a corner {WORST_OF_TRAVELLING_CORNERS:g} of its "
+                f"thickness, where a run stops; {SAFETY * travel:.2g} s is safe"
             )
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)

@@ -9,19 +9,19 @@ from porescale.analysis.permeability import bed_of_spheres, gebart, kozeny_carma
 from porescale.builders.checks.clear_packing import require_clear_packing
 from porescale.builders.checks.device import device_of
 from porescale.builders.cost import (
-    expected,
-    expected_seconds,
     memory,
     require_memory,
     seconds_on_gpu,
     snapshot_bytes,
-    snapshot_count,
+    step_count,
+    work,
 )
 from porescale.builders.derive import Derived, derive
 from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.builders.kinds import SECTIONS
-from porescale.common.api.report import Report, report_output
+from porescale.common.api.report import Report, report_output, report_time
+from porescale.common.duration.expected import STEPS, expected
 from porescale.common.schema.own import own_laws
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
@@ -265,9 +265,9 @@ def _device(scene: Scene, derived: Derived, steps: int, on_cpu: float, out: Repo
     out.row("memory of the GPU", need / 2**20, "MiB", name)
     if memory_bytes and need > memory_bytes:
         out.warn(f"the GPU has {memory_bytes / 2**30:.1f} GiB: the run will not start there")
-    seconds, measured = expected_seconds(derived, steps, name)
-    known = "by the last runs of such scenes on it"
-    if not measured:
+    told = expected(work(scene, derived, name))
+    seconds, known = told.seconds[STEPS], "by the last runs of such scenes on it"
+    if not told.measured:
         bandwidth = makers_bandwidth()
         if bandwidth is None:
             out.row("time on the GPU", "unknown", "", "nothing says how fast its memory is")
@@ -275,31 +275,23 @@ def _device(scene: Scene, derived: Derived, steps: int, on_cpu: float, out: Repo
         seconds = seconds_on_gpu(derived, steps, bandwidth)
         known = f"at least: an estimate from the maker's figures, {bandwidth / 1e9:.4g} GB/s of memory; not measured"
     out.row("time on the GPU", seconds, "s", known)
-    out.row("gain of the GPU", on_cpu / seconds, "", "time on the CPU over that" + ("" if measured else ", at most"))
+    out.row(
+        "gain of the GPU", on_cpu / seconds, "", "time on the CPU over that" + ("" if told.measured else ", at most")
+    )
     return seconds
 
 
 def _cost(scene: Scene, derived: Derived, out: Report) -> None:
-    steps = max(1, round(scene.time.end / derived.model_step))
-    snapshots = snapshot_count(scene.time.end, scene.output.snapshot_interval)
-    told = expected(derived, steps, snapshots)
+    steps, told = step_count(scene, derived), expected(work(scene, derived))
     seconds = told.total
     out.heading("Cost")
     out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
     out.row("memory", memory(derived) / 2**20, "MiB")
-    guess = "a guess until this machine has done such a run"
-    known = "by this machine's last runs of such scenes" if told.measured else guess
-    on_gpu = device_of(scene) == "gpu" and derived.cells is not None
-    if on_gpu:
-        out.row("time on the CPU", told.steps, "s", known)
-        seconds = _device(scene, derived, steps, told.steps, out)
+    if device_of(scene) == "gpu" and derived.cells is not None:
+        out.row("time on the CPU", told.seconds[STEPS], "s", told.known)
+        seconds = _device(scene, derived, steps, told.seconds[STEPS], out)
     else:
-        out.row("time", seconds, "s", known)
-        out.row("of it compiling", told.compiling, "s", "kernels that are not kept on disk")
-        out.row("of it steps", told.steps, "s")
-        out.row(
-            "of it the rest", seconds - told.compiling - told.steps, "s", "start, packing, files, pictures and film"
-        )
+        report_time(out, work(scene, derived))
     if seconds > WEEK:
         out.warn(
             f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "

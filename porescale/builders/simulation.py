@@ -35,8 +35,7 @@ class Simulation(ShownSimulation):
     step : model steps done (fluid steps, or contact steps without fluid);  step_seconds : s;  time : s.
     parts : the stepper first;  scene, derived : what it was built from.
     fluid, grains, coupled, weight (n, 2) N/m of dry grains : None where the scene has no such thing;  frames : bodies
-    of segments;  built_in : seconds that building took, but for compiling;  compiled_before : kernels that this process
-    had compiled before, and the seconds that they took.
+    of segments.
     """
 
     def __init__(self, system: System, stepper: Stepper) -> None:
@@ -45,8 +44,6 @@ class Simulation(ShownSimulation):
         self.fluid, self.grains, self.coupled = system.fluid, system.grains, system.coupled
         self.weight, self.frames = system.weight, system.frames
         self.stepper, self.parts = stepper, system.parts
-        self.built_in = 0.0
-        self.compiled_before = (0, 0.0)
         self._held = system.held
         self._before = [part.before for part in self.parts if overrides(part, "before")]
         self._after = [part.after for part in self.parts if overrides(part, "after")]

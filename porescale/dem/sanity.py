@@ -11,28 +11,22 @@ from porescale.dem.state import State
 WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms are not valid beyond
 WORST_OF_CORNERS = 0.8  # of the thicknesses of two segments: small beside bodies, which go through each other at 1
 WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be detected too late
+WORST_OF_TRAVELLING_CORNERS = 0.2  # of the smallest thickness: two corners meet at two of them, a disc at more
 
 
 def check(grains: State) -> None:
     """Raise Unstable, naming grain, quantity and step, where the state is not finite or out of bounds.
 
-    That is: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 % of the radius
-    (of a corner of a frame: 80 % of the thicknesses); a centre behind a solid side (a corner: by 30 % of its
-    segments), or through a plate since the last check.
+    That is: a number that is none; a speed beyond 0.1 smallest radii (of corners: 0.2 smallest thicknesses) per step;
+    an overlap beyond 30 % of the radius (of a corner of a frame: 80 % of the thicknesses); a centre behind a solid side
+    (a corner: by 30 % of its segments), or through a plate since the last check.
     """
     discs = grains.discs
     if discs.count == 0:
         return
     check_finite(grains)
     if grains.last_dt > 0.0:
-        speed = np.hypot(discs.velocity[:, 0], discs.velocity[:, 1])
-        fastest = int(speed.argmax())
-        smallest = float(discs.radius.min(where=discs.radius > 0.0, initial=np.inf))
-        if speed[fastest] * grains.last_dt > WORST_TRAVEL * smallest:
-            raise unstable(
-                grains, f"grain {fastest}", "speed", float(speed[fastest]), "m/s",
-                f"more than {WORST_TRAVEL:g} of the smallest radius in a step: shorten the contact step",
-            )  # fmt: skip
+        _check_travel(grains)
     for name, wall in zip(grains.wall_names, grains.walls, strict=True):
         distance = (discs.position - wall[:2]) @ wall[2:4]
         if grains.segments is not None:
@@ -52,6 +46,27 @@ def check(grains: State) -> None:
             grains, f"grain {deepest.disc}", f"overlap with {deepest.against} over radius", deepest.share, "",
             "raise the stiffness or shorten the contact step",
         )  # fmt: skip
+
+
+def _check_travel(grains: State) -> None:
+    """Raise Unstable where a disc or a corner of a frame goes too far in a step of ``last_dt`` (s).
+
+    Thin corners do not limit discs: a disc of radius r meets a frame of thickness t at r + t.
+    """
+    discs = grains.discs
+    speed = np.hypot(discs.velocity[:, 0], discs.velocity[:, 1])
+    corner = np.zeros(discs.count, bool) if grains.segments is None else grains.segments.is_corner
+    for chosen, share, what in (
+        (~corner, WORST_TRAVEL, "radius"),
+        (corner, WORST_OF_TRAVELLING_CORNERS, "thickness"),
+    ):
+        smallest = float(discs.radius.min(where=chosen & (discs.radius > 0.0), initial=np.inf))
+        fastest = int(np.where(chosen, speed, 0.0).argmax())
+        if speed[fastest] * grains.last_dt > share * smallest:
+            raise unstable(
+                grains, f"grain {fastest}", "speed", float(speed[fastest]), "m/s",
+                f"more than {share:g} of the smallest {what} in a step: shorten the contact step",
+            )  # fmt: skip
 
 
 def _check_plates(grains: State) -> None:

@@ -159,6 +159,8 @@ def write_fields(
     seen = 0, 0
     if folder is not None:
         snapshots.clear(folder)
+        for stale in [*folder.glob("vectors_[0-9]*.csv"), *folder.glob("overlay.*"), folder / REVIEW]:
+            stale.unlink(missing_ok=True)  # of an earlier film
     for number, field in enumerate(fields):
         if alone and field.valid.sum() < CHANCE * (~field.solid).sum():
             raise strangers(measurement, Worst(number, 0.0, field))

@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 
 from porescale.builders.build import build
-from porescale.builders.cost import expected_seconds, remember, seconds_on_gpu
+from porescale.builders.cost import seconds_on_gpu, work
 from porescale.builders.derive import derive
 from porescale.builders.report import bytes_on_gpu, report
 from porescale.builders.scene import Scene
 from porescale.common.compiled import cuda
 from porescale.common.core.errors import InputError, Unstable
+from porescale.common.duration.expected import STEPS, expected, remember
+from porescale.common.duration.quiet import moment
 from porescale.lbm.device.fluid import bytes_needed
 
 FLUID = {"spacing": 1e-3, "relaxation_time": 0.7, "viscosity": 1e-5, "body_force": [0.01, 0]}
@@ -137,12 +139,13 @@ def single():
 def test_what_a_gpu_did_is_remembered_apart_from_the_cpu(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     scene, derived = Scene(**ON_GPU), derive(Scene(**ON_GPU))
-    guess = expected_seconds(derived, 1000)
-    remember(derived, 250.0, cuda.SIMULATOR)
-    assert expected_seconds(derived, 1000) == guess
-    assert expected_seconds(derived, 1000, cuda.SIMULATOR) == (pytest.approx(4.0, rel=1e-12), True)
+    on_cpu, on_gpu = work(scene, derived), work(scene, derived, cuda.SIMULATOR)
+    guess = expected(on_cpu)
+    remember(on_gpu, {STEPS: 3.0 * on_gpu.seconds[STEPS]}, moment())
+    assert expected(on_cpu) == guess
+    assert expected(on_gpu).seconds[STEPS] == pytest.approx(3.0 * on_gpu.seconds[STEPS], rel=1e-12)
     assert "by the last runs of such scenes on it" in str(report(scene))
-    assert not expected_seconds(derived, 1000, "another GPU")[1]
+    assert not expected(work(scene, derived, "another GPU")).measured
 
 
 @pytest.mark.parametrize("fits", [0, 3, 7])

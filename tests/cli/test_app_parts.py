@@ -12,6 +12,7 @@ import porescale
 from porescale import Scene
 from porescale.cli.main import PACKAGE
 from porescale.common.core.errors import InputError
+from porescale.common.duration.expected import COMPILING, LEARNT, Work
 from porescale.common.record.model import Model, Snapshot
 from porescale.common.schema.messages import every_key
 from porescale.common.schema.sections import LEVELS, load, scene_as_dict
@@ -149,7 +150,7 @@ def test_a_cache_that_cannot_be_written_fails_no_run(tmp_path, monkeypatch):
         out = tmp_path / f"run with a {place}"
         ended = drive(build(scene), out, scene, card={"scene": scene_as_dict(scene)}, resume=False, quiet=True)
         assert ended.outcome == porescale.open_run(out).card["outcome"] == "finished"
-    assert list((tmp_path / "folder" / "porescale").glob("rate.json"))  # the twin: where it can be written, it is
+    assert list((tmp_path / "folder" / "porescale").glob("runs.json"))  # the twin: where it can be written, it is
 
 
 @pytest.mark.parametrize("overwrite", [False, True])
@@ -164,8 +165,9 @@ def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch,
         raise Asked(options["overwrite"])
 
     monkeypatch.setattr("porescale.common.record.drive.drive", asked)
-    monkeypatch.setattr("porescale.builders.cost.expected", lambda *_: SimpleNamespace(finishing=0.0))
-    model = SimpleNamespace(derived=SimpleNamespace(model_step=1e-3))
+    work = Work("", "", dict.fromkeys((COMPILING, *LEARNT), 1.0))
+    monkeypatch.setattr("porescale.builders.cost.work", lambda *_: work)
+    model = SimpleNamespace(derived=None)
     for part in (porescale.cli.main.PACKAGE, continuum_sph.cli.PACKAGE):
         (tmp_path / "scene.toml").write_text(part.template(), encoding="utf-8")
         scene = load(tmp_path, part.scene())

@@ -51,7 +51,7 @@ def table(lines: Sequence[dict[str, str]], done: Sequence[Path], command: str) -
     seed = lines[0]["members"].split()[0].partition("=")[2]
     said = (
         f"{len(done)} of {lines[0]['asked']} packings finished, seeds from {seed} on. Made on {first['started'][:10]} "
-        f"at commit {first['commit']['hash'][:8]} by `{command}`, {cost:.0f} core-seconds a packing."
+        f"at commit {open_run(done[0]).commit} by `{command}`, {cost:.0f} core-seconds a packing."
     )
     return [*files.markdown_table([*header, "packings inside", "verdict"], rows), "", said]
 

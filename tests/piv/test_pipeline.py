@@ -49,6 +49,16 @@ def test_fields_are_written_with_their_times(film, tmp_path):
     assert all((tmp_path / "out" / name).exists() for name in ("piv.vtkhdf", "quiver.png", "vorticity.png"))
 
 
+def test_what_a_longer_film_left_in_the_folder_goes(film, tmp_path):
+    measurement = Measurement(Shots(film), SETTINGS)
+    for name in ("vectors_0001.csv", "overlay.mp4", "review.html", "vectors.csv"):
+        (tmp_path / name).write_text("of an earlier film")
+    write_fields(measurement, measurement.fields(), tmp_path)
+    assert [path.name for path in sorted(tmp_path.glob("vectors*"))] == ["vectors.csv", "vectors_0000.csv"]
+    assert not (tmp_path / "overlay.mp4").exists()
+    assert not (tmp_path / "review.html").exists()
+
+
 def test_pictures_of_two_flows_are_no_field(film, tmp_path):  # the check that must fail
     other = pair(flows.uniform(*SHIFT), Camera(SIZE, noise=0.0, lost=0.0), 7)
     cv2.imwrite(str(tmp_path / "b.png"), other.second)

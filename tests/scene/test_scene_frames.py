@@ -13,7 +13,7 @@ from porescale.builders.derive import derive
 from porescale.builders.initial.frames import placed_frames
 from porescale.builders.report import report
 from porescale.common.core.constants import GRAVITY
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, Unstable
 from porescale.common.schema.sections import scene_as_dict, validate
 from tests.reference.scenes import grain, refusals, water
 from tests.reference.scenes_of_grains import BOX, assert_same_bits, framed, lines, loose, resumed
@@ -335,3 +335,26 @@ def test_pictures_of_contacts_show_discs_and_polygons_alike(tmp_path):
 
     ends = branches(all_points(snapshot), contacts)
     assert ends[:, 1, 1] == pytest.approx(1e-3, abs=1e-6)  # each ends on the line of the floor
+
+
+def test_a_disc_falls_into_a_thin_bucket_at_the_step_that_is_chosen():
+    # It meets the floor at r + thickness, so a wall of a tenth of its radius does not limit its way in a step: it may
+    # go r/10.  The step follows from the contact; at 0.4 m/s it makes more than 0.1 thicknesses, which stopped the run.
+    # At rest it lies m g/k = 8e-7 m deeper than touching; what is left of its bounces is below 2e-5 m.
+    bucket = {"chain": [[1e-3, 7e-3], [1e-3, 1e-3], [9e-3, 1e-3], [9e-3, 7e-3]], "thickness": 1e-4}
+    disc = {**grain(5e-3, 5e-3, 2e-3), "velocity": [0.0, -0.4]}
+    scene = loose(disc, domain=BOX, container=[bucket], contact={"stiffness": 1e5, "restitution": 0.1})
+    simulation = build(scene)
+    assert derive(scene).contact_step * 0.4 > 0.1 * bucket["thickness"]
+    simulation.run(until=0.1)
+    simulation.grains.check()
+    assert simulation.positions[0, 1] == pytest.approx(1e-3 + 1e-4 + 1e-3, abs=2e-5)
+    simulation.grains.discs.velocity[-1] = [0.3 * bucket["thickness"] / simulation.grains.last_dt, 0.0]
+    with pytest.raises(Unstable, match=r"0\.2 of the smallest thickness in a step"):
+        simulation.grains.check()
+
+
+def test_the_step_is_short_enough_for_thin_corners():
+    rod = {"chain": [[2e-3, 6e-3], [6e-3, 6e-3]], "width": 2e-5, "thickness": 2e-5, "velocity": [0.0, -2.0]}
+    made = derive(framed(segment=[rod], contact={"stiffness": 1e4, "restitution": 0.5}))
+    assert made.contact_step * made.speed <= 0.2 * rod["thickness"]

@@ -1,11 +1,7 @@
 """The second fluid of a scene: what it is, where it starts, how it rises, how round it is and in how many pieces."""
 
 import numpy as np
-from contourpy import contour_generator
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from continuum_sph.builders.initial_pressure import lattice_pressure
 from continuum_sph.scene.inclusion import InclusionSection
@@ -94,6 +90,9 @@ def circularity(x: Floats, fluid: NDArray[np.int64], spacing: float) -> float:
     give the accuracy: a disc of ten spacings and more has 0.996 to 0.999; an ellipse whose ends are as blunt as four
     spacings is right to 0.5 %; sharper corners are cut off, which makes the shape too round.
     """
+    from contourpy import contour_generator
+    from scipy.spatial import cKDTree  # takes longer to import than a scene to be judged
+
     h = SMOOTH * spacing
     own = x[fluid == 1]
     low, high = own.min(axis=0) - 4.0 * h, own.max(axis=0) + 4.0 * h
@@ -117,6 +116,10 @@ def circularity(x: Floats, fluid: NDArray[np.int64], spacing: float) -> float:
 
 def pieces(x: Floats, spacing: float) -> int:
     """Number of groups of four and more of the points ``x`` (n, 2) m that hang together within `TOUCH` spacings."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     pairs = cKDTree(x).query_pairs(TOUCH * spacing, output_type="ndarray")
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(x), len(x)))
     _, label = connected_components(links, directed=False)

@@ -323,15 +323,17 @@ def soil_law(scene: Scene) -> SoilLaw:
 
 def soil_particles(scene: Scene) -> tuple[Floats, Floats]:
     """Positions (n, 2) m and stresses (n, 4) Pa of a scene's soil at the start."""
-    section, (width, height) = soil_section(scene), scene.inner
-    lattice = square_lattice((0.0, 0.0), (width, height), scene.numerics.spacing)
+    section, spacing = soil_section(scene), scene.numerics.spacing
+    corners = [corner for body in section.body for corner in body.outline]
+    right, above = (min(scene.inner[a], max(corner[a] for corner in corners) + spacing) for a in (0, 1))
+    lattice = square_lattice((0.0, 0.0), (right, above), spacing)  # a tank may be far wider than its ground
     inside = np.zeros(len(lattice), np.bool_)
     top = np.full(len(lattice), -np.inf)
     for body in section.body:
         inside |= body.holds(lattice)
         top = np.maximum(top, body.top(lattice[:, 0]))
     if scene.pile:
-        inside &= ~sheet_pile(scene.pile, scene.numerics.spacing).holds(lattice)
+        inside &= ~sheet_pile(scene.pile, spacing).holds(lattice)
     x = lattice[inside]
     if section.stress == "none":
         return x, np.zeros((len(x), 4))

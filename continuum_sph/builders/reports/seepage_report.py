@@ -6,6 +6,7 @@ from continuum_sph.builders.parts.sheet_pile import LEAST, ground_at, resolved, 
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.water import water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
+from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import water_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
@@ -45,7 +46,7 @@ def seepage_report(scene: Scene) -> Report:
         step = min(step, moving(scene, out, stiff))
     if scene.air:
         air_report(out, scene, law, len(dry_pores(scene.water.column, soil)))
-    out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
+    report_run(out, scene, "soil and water", 2 * len(soil), scene.time.end / step, RATE)
     report_output(out, scene.time.end, scene.output, round(scene.time.end / step), 1000.0 + 2.0 * SNAPSHOT * len(soil))
     report_origin(out, section.origin)
     if scene.pile:

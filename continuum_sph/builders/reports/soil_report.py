@@ -4,6 +4,7 @@ import math
 
 from continuum_sph.builders.parts.soil import material_of, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.watched import watched_rows
+from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.scene.material_file import Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.soil.parameters import RULES
@@ -57,7 +58,7 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
     out.row("steps", round(steps))
     out.row("memory", BYTES * count / 2**20, "MiB")
     rate = 1.0 / (1.0 / RATE + more)
-    out.row("expected time", steps * count / rate, "s", f"at {rate:.2g} particle-steps/s, one thread")
+    report_run(out, scene, "soil with suction" if more else "soil", count, steps, rate)
     report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
     if strain > 10.0 * SOFTEST:

@@ -3,6 +3,7 @@
 import math
 
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
+from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.parameters import RULES
@@ -64,10 +65,10 @@ def water_report(scene: Scene) -> Report:
     steps = scene.time.end / step
     out.row("steps", round(steps))
     out.row("memory", BYTES * (water + walls) / 2**20, "MiB")
-    more = law.corrected or law.shifting > 0.0 or law.tension > 0.0
-    rate = RATE_OF_MORE if more else RATE
-    out.row("expected time", steps * (water + walls) / rate, "s", f"at {rate:.2g} particle-steps/s, one thread")
     if scene.soil is None:  # else the step is shorter
+        more = law.corrected or law.shifting > 0.0 or law.tension > 0.0
+        kind, rate = ("water with more", RATE_OF_MORE) if more else ("water", RATE)
+        report_run(out, scene, kind, water + walls, steps, rate)
         report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * water)
     _warn(scene, mach, out)
     return out

@@ -27,7 +27,8 @@ LIGHTEST = ((4.0, 0.2), (3.0, 0.3), (2.0, 0.5))
 """Cells across, and the density ratio from which on free polygons held for 1000 steps at relaxation time 0.8: plates up
 to 24 cells long, and triangles; squares of 6 cells held at 0.1, too."""
 TRAVEL = 0.05
-"""Of the smallest thickness that the speed to expect may go in a contact step: half of what the run's health allows."""
+"""Of the smallest thickness that the speed to expect may go in a contact step: a quarter of what the run's health
+allows."""
 
 
 def longest_step(placed: Sequence[Placed], speed: float) -> float:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from porescale.builders.checks.flows import check_flows
 from porescale.builders.checks.limits import (
     CELLS_THICK,
     DENSITY_REFUSE,
@@ -31,7 +32,7 @@ from porescale.builders.initial.placed import by_hand
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
-from porescale.dem.sanity import WORST_TRAVEL
+from porescale.dem.sanity import WORST_OF_TRAVELLING_CORNERS, WORST_TRAVEL
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.scales import Scales
 from porescale.scene.bodies.rectangle import Rectangle
@@ -142,10 +143,12 @@ def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[flo
 
 def travel_step(scene: Scene, speed: float, radius: float, frames: Sequence[Placed] = ()) -> float:
     """Contact step (s) in which nothing goes further at the ``speed`` (m/s) to expect than a run allows: WORST_TRAVEL
-    of the smallest ``radius`` (m).  Infinite where nothing moves, and where the fall has no end: that speed is a bound
-    which hardly anything reaches.
+    of the smallest ``radius`` (m), a corner of ``frames`` WORST_OF_TRAVELLING_CORNERS of the smallest thickness.
+    Infinite where nothing moves, and where the fall has no end: that speed is a bound which hardly anything reaches.
     """
-    return WORST_TRAVEL * radius / speed if speed > 0.0 and not fall(scene, 1.0, frames)[1] else math.inf
+    thickness = min((it.frame.thickness for it in frames if it.frame.thickness > 0.0), default=math.inf)
+    way = min(WORST_TRAVEL * radius, WORST_OF_TRAVELLING_CORNERS * thickness)
+    return way / speed if speed > 0.0 and not fall(scene, 1.0, frames)[1] else math.inf
 
 
 def column_height(packing: Packing, gravity: tuple[float, float]) -> float:
@@ -184,6 +187,7 @@ def check_regime(
     _check_thickness(scene.rectangle, scales, warnings)
     check_sound(scene, scales, warnings)
     check_gate(scene, scales, warnings)
+    check_flows(scene, scales, sizes is not None, faults, warnings)
     if scene.ring and scene.ring.diameter < RING_CELLS * scales.spacing:
         repair = f"a spacing of {scene.ring.diameter / RING_CELLS:.2g} m gives it so many"
         cells, allowed = (

@@ -55,8 +55,8 @@ def write_tables(tables: Tables, folder: Path) -> list[Path]:
     paths = {name: folder / f"{name}.csv" for name in tables}
     for path in paths.values():
         if path.exists():
-            repair = "name another folder (out), or remove it"
-            raise InputError(Fault("table", str(path), "is there already: the run measured it itself", repair=repair))
+            problem = "is there already, of the run itself or an earlier measurement"
+            raise InputError(Fault("table", str(path), problem, repair="name another folder (out), or remove it"))
     for name, table in tables.items():
         from porescale.common.evidence.files import csv_text
 

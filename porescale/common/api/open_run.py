@@ -96,6 +96,13 @@ class Run(record.Run):
         return str(self.card.get("outcome", ""))
 
     @property
+    def commit(self) -> str:
+        """Eight digits of the commit of the package's tree that made the run, with a + where files had changed since;
+        "" where it lay in none."""
+        known = self.card.get("commit")
+        return known["hash"][:8] + "+" * known["changed"] if known else ""
+
+    @property
     def tables(self) -> list[str]:
         """Names of the tables of numbers over time in the run folder: the series first, then by name."""
         found = sorted(path.stem for path in self.folder.glob("[!.]*.csv") if _over_time(path))

@@ -6,6 +6,8 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from porescale.common.core.errors import InputError
+from porescale.common.duration.expected import COMPILING, STEPS, Work, expected
+from porescale.common.duration.quiet import BUSY, load_now
 from porescale.common.record.schedule import recorded, too_many
 
 if TYPE_CHECKING:
@@ -31,11 +33,13 @@ class Report:
     """Rows under headings, in the order they were added, and warnings.
 
     ``heading`` opens a group, ``row`` adds to the group opened last, ``warn`` adds one line of warning.
+    work : what a run has to do, where a report says so.
     """
 
     title: str
     groups: dict[str, list[Row]] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    work: Work | None = None
 
     def heading(self, name: str) -> None:
         """Open the group ``name``; opening it again goes on with it."""
@@ -100,6 +104,21 @@ class Report:
             console.print(table)
         for warning in self.warnings:
             console.print(Text(f"warning: {warning}", style="yellow"), soft_wrap=True)
+
+
+def report_time(out: Report, work: Work) -> None:
+    """Add how long a run takes on a quiet machine, of what, and beside what runs on it now where that is much more.
+
+    work : what it has to do; the report keeps it.
+    """
+    out.work, told = work, expected(work)
+    compiling, steps = told.seconds[COMPILING], told.seconds[STEPS]
+    out.row("time", told.total, "s", told.known)
+    out.row("of it compiling", compiling, "s", "kernels that are not kept on disk")
+    out.row("of it steps", steps, "s")
+    out.row("of it the rest", told.total - compiling - steps, "s", "start, packing, files, pictures and film")
+    if (busy := load_now()) > BUSY:
+        out.row("time beside what runs now", busy * told.total, "s", f"{busy:.2g} times that of a quiet machine")
 
 
 def report_output(out: Report, end: float, output: Any, steps: int, snapshot_bytes: float) -> None:

@@ -11,28 +11,33 @@ from porescale.common.core.errors import InputError
 
 if TYPE_CHECKING:
     from porescale.common.api.program import Program
+    from porescale.common.api.simulation import BaseSimulation
+    from porescale.common.duration.expected import Work
     from porescale.common.record.drive import Outcome
-    from porescale.common.record.model import Model
     from porescale.common.schema.sections import Opened, Section
 
 
 def drive_scene(
-    model: Model,
+    model: BaseSimulation,
     folder: Path,
     scene: Any,
     *,
     card: dict[str, Any],
     after: Callable[[Path], object],
+    work: Work,
     formerly: Mapping[str, Any] = MappingProxyType({}),
     **options: Any,
 ) -> Outcome:
     """`drive` the model for as long as its scene says, with rows, snapshots and checkpoints when it says.
 
-    after, options : of `drive`;  formerly : of `Program`.
+    after, options : of `drive`;  work : what the run has to do; what that takes is noted where all of it was done in
+    one go;  formerly : of `Program`.
     """
+    from porescale.common.duration.expected import BUILDING, FINISHING, expected, remember
+    from porescale.common.duration.quiet import quiet_seconds
     from porescale.common.record.drive import drive
 
-    return drive(
+    outcome = drive(
         model,
         folder,
         scene.time.end,
@@ -42,8 +47,12 @@ def drive_scene(
         card=card,
         after=after,
         today=_completing(type(scene), card, formerly),
+        finish=expected(work).seconds[FINISHING],
         **options,
     )
+    if outcome.phases and model.building and not options.get("resume"):
+        remember(work, {BUILDING: quiet_seconds(*model.building), **outcome.phases}, model.building[0])
+    return outcome
 
 
 def check_scene_resume(program: Program, folder: Path, card: dict[str, Any]) -> None:

@@ -112,7 +112,9 @@ def scene_path(given: str | Path, program: str = "") -> Path:
             repair = f"did you mean the case {near!r}? `porescale cases` lists all"
             raise InputError(Fault(str(given), problem="no scene here and no case of that name", repair=repair))
         return path
-    case = next((it for it in cases() if it.name == path.parts[0]), None)
+    folder = cases_folder()
+    assert folder is not None
+    case = _case(folder / path.parts[0])
     if case is not None and found == case.path and case.kind != "scene":
         others = f"; its scenes: {', '.join(case.scenes)}" if case.scenes else ""
         repair = f"run it with `{case.command}`{others}"
@@ -132,20 +134,26 @@ def nearest_case(given: str | Path) -> str:
 
 
 def _cases(folder: Path) -> Iterator[Case]:
-    """The cases in ``folder``: its folders with a README, by name."""
+    """The cases in ``folder``, by name."""
     for path in sorted(folder.iterdir()):
-        page = path / "README.md"
-        if not page.is_file():
-            continue
-        with page.open(encoding="utf-8") as lines:
-            title = lines.readline().lstrip("#").strip()
-        kind: Literal["scene", "deck", "script"] = "script"
-        if (path / SCENE).is_file():
-            kind = "scene"
-        elif (path / DECK).is_file():
-            kind = "deck"
-        names = tuple(f"{path.name}/{it.name}" if it.name != SCENE else path.name for it in _scene_files(path))
-        yield Case(path.name, title, _package(path), kind, path, names)
+        if case := _case(path):
+            yield case
+
+
+def _case(path: Path) -> Case | None:
+    """The case in a folder: one that has a README."""
+    page = path / "README.md"
+    if not page.is_file():
+        return None
+    with page.open(encoding="utf-8") as lines:
+        title = lines.readline().lstrip("#").strip()
+    kind: Literal["scene", "deck", "script"] = "script"
+    if (path / SCENE).is_file():
+        kind = "scene"
+    elif (path / DECK).is_file():
+        kind = "deck"
+    names = tuple(f"{path.name}/{it.name}" if it.name != SCENE else path.name for it in _scene_files(path))
+    return Case(path.name, title, _package(path), kind, path, names)
 
 
 def _scene_files(folder: Path) -> list[Path]:

@@ -21,6 +21,7 @@ from porescale.common.record.stop import polite_stop
 
 if TYPE_CHECKING:
     from porescale.common.core.types import Floats
+    from porescale.common.duration.quiet import Moment
     from porescale.common.record.model import Snapshot
     from porescale.common.record.part import Part
     from porescale.common.record.progress import Watch
@@ -33,10 +34,11 @@ class BaseSimulation(ABC):
     """A `Model` of a scene that is run, looked at and changed from Python.
 
     scene : what it was built from;  parts : what it consists of, in the order of their columns;  hooks : functions
-    that are called while it runs, by name.
+    that are called while it runs, by name;  building : when building it began and ended, if that is known.
     """
 
     scene: Any
+    building: tuple[Moment, Moment] | None = None
     parts: list[Part]
     hooks: Mapping[str, Hook] = MappingProxyType({})
 

@@ -79,7 +79,12 @@ def keep_only_used(current: Path, pattern: str, days: float = 30.0) -> None:
                     other.unlink(missing_ok=True)
 
 
+USED: list[str] = []
+"""Names of what this process marked as used, kernels that were kept among them."""
+
+
 def mark_used(path: Path) -> None:
     """Mark a file or folder as used now; best effort, it need not exist."""
+    USED.append(path.name)
     with suppress(OSError):
         os.utime(path)

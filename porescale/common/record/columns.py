@@ -80,7 +80,7 @@ class Columns(Mapping[str, AnyArray]):
 
     def _repr_html_(self) -> str:
         picked = range(self.rows) if self.rows <= 2 * SHOWN else [*range(SHOWN), *range(self.rows - SHOWN, self.rows)]
-        rows: list[list[object]] = [[f"{column[k]:.6g}" for column in self._columns.values()] for k in picked]
+        rows: list[list[object]] = [[_shown(column[k]) for column in self._columns.values()] for k in picked]
         if self.rows > 2 * SHOWN:
             rows.insert(SHOWN, ["…"] * len(self))
         return html_table(self._title(), list(self._columns), rows)
@@ -91,3 +91,8 @@ class Columns(Mapping[str, AnyArray]):
         if self.rows and TIME in self._columns:
             text += f", {self[TIME][0]:.6g} to {self[TIME][-1]:.6g} s"
         return text
+
+
+def _shown(value: object) -> str:
+    """A number to six digits, or a word as it is."""
+    return value if isinstance(value, str) else f"{value:.6g}"

@@ -1,15 +1,17 @@
 """Drive a model through time and keep its record.  The loop handles steps, events and files, no physics."""
 
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from porescale.common.compiled.turns import TURNS
 from porescale.common.core.atomic import clean, folder_in_use, owned
 from porescale.common.core.errors import Fault, InputError, Unstable
+from porescale.common.duration.expected import FINISHING, RECORDING, STEPS
+from porescale.common.duration.quiet import moment, quiet_seconds, share
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
 from porescale.common.record.check_state import check_state
@@ -30,8 +32,8 @@ SAVE_SHARE = 0.02
 class Outcome:
     """How a run ended: ``outcome`` "finished" or "already finished", and what it took.
 
-    steps_per_second : but for the first blocks, which compile;  recording, finishing : seconds of rows, snapshots and
-    checkpoints between the steps, and of pictures, film and all else after them.
+    steps_per_second : but for the first blocks, which compile;  phases : seconds of a quiet machine that the steps
+    took, rows, snapshots and checkpoints between them, and pictures, film and all else after them.
     """
 
     folder: Path
@@ -41,8 +43,7 @@ class Outcome:
     seconds: float
     snapshots: int
     steps_per_second: float
-    recording: float = 0.0
-    finishing: float = 0.0
+    phases: Mapping[str, float] = field(default_factory=dict)
 
 
 def drive(
@@ -154,12 +155,11 @@ class _Run:
 
 def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], object] | None) -> Outcome:
     """The loop, and how it may end."""
-    model, began, compiled = run.model, clock.perf_counter(), TURNS.seconds
+    model, began = run.model, moment()
     try:
         with polite_stop() as stop:
             spent = _loop(run, record, stop, watch)
-        stepped = clock.perf_counter()
-        recording = stepped - began - spent.seconds - (TURNS.seconds - compiled - spent.compiling)
+        stepped = moment()
         watch.enter("joining snapshots")
         record.close(model, cards.RUNNING)
         if after is not None:
@@ -184,10 +184,10 @@ def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], ob
                 error.add_note(record.last_good())
         raise
     seconds, count = record.seconds(), record.snapshots
-    finishing = clock.perf_counter() - stepped
-    return Outcome(
-        record.folder, cards.FINISHED, model.step, model.time, seconds, count, spent.speed(), recording, finishing
-    )
+    steps = (spent.seconds - spent.compiling) * share(began, stepped)
+    phases = {STEPS: steps, RECORDING: quiet_seconds(began, stepped) - steps,
+              FINISHING: quiet_seconds(stepped, moment())}  # fmt: skip
+    return Outcome(record.folder, cards.FINISHED, model.step, model.time, seconds, count, spent.speed(), phases)
 
 
 @dataclass

@@ -16,11 +16,14 @@ from rich.progress import (
 from rich.text import Text
 
 from porescale.common.compiled.turns import TURNS
+from porescale.common.duration.quiet import Moment, moment, share
 from porescale.common.record.cost import UNCOUNTED
 
 PATIENCE = 2.0
 """Seconds after which a person wonders what happens."""
 LINE_EVERY = 10.0
+LOOK_EVERY = 1.0
+"""Seconds after which it is asked anew what share of a core the run gets."""
 STARTING = "starting"
 HALT, IDLE = 2.0, 0.01
 """Seconds by which a wait must last too long to count as time in which the process was stopped (SIGSTOP, Ctrl-Z), and
@@ -32,7 +35,7 @@ class Watch:
 
     quiet : nothing at all.  On a terminal a bar appears after two seconds, in a notebook one line that is written over;
     otherwise plain lines on stderr, the first after ten seconds.  A kernel that is being compiled is named.
-    finish : seconds that joining, pictures and film are expected to take after the last step.
+    finish : seconds that joining, pictures and film are expected to take after the last step on a quiet machine.
     """
 
     def __init__(self, title: str, start: float, end: float, *, quiet: bool = False, finish: float = 0.0) -> None:
@@ -42,7 +45,7 @@ class Watch:
         self.phase = STARTING
         self.time, self.step, self.updates = start, 0, 0
         self.began = clock.perf_counter()
-        self.running_since: float | None = None
+        self.running: tuple[Moment, Moment] | None = None
         self.finishing_since: float | None = None
         self.stopped = 0.0
         self.last_line = self.began
@@ -67,9 +70,11 @@ class Watch:
         """The run has come to ``step`` at ``time``, s."""
         self.step, self.time, self.updates = step, time, self.updates + 1
         if self.updates in (1, UNCOUNTED):  # until then kernels are compiled, or read from disk
-            self.running_since = clock.perf_counter()
+            self.running = moment(), moment()
             self.start, self.stopped = time, 0.0
             self.phase = "running"
+        elif self.running is not None and clock.perf_counter() > self.running[1].wall + LOOK_EVERY:
+            self.running = self.running[0], moment()
 
     def enter(self, phase: str) -> None:
         """Name what happens after the steps, e.g. "writing pictures and film"."""
@@ -89,16 +94,21 @@ class Watch:
     def left(self) -> float | None:
         """Seconds left, all that follows the steps included; None while unknown, and once that lasts too long.
 
-        Steps are expected to go on at their mean speed, rows, snapshots and checkpoints included, since kernels were
-        compiled; time in which the process was stopped does not count.
+        Steps are expected to go on at their mean speed, rows, snapshots and checkpoints included, and what follows at
+        the share of a core that they got.  The first blocks do not count, nor compiling, nor time in which the process
+        was stopped.
         """
-        if self.finishing_since is not None:
-            left = self.finish - (clock.perf_counter() - self.finishing_since)
-            return left if left > 0.0 else None
-        if self.running_since is None or self.time <= self.start:
+        if self.running is None:
             return None
-        spent = clock.perf_counter() - self.running_since - self.stopped
-        return spent * (self.end - self.time) / (self.time - self.start) + self.finish
+        since, now = self.running
+        finish = self.finish / share(since, now)
+        if self.finishing_since is not None:
+            left = finish - (clock.perf_counter() - self.finishing_since)
+            return left if left > 0.0 else None
+        if self.time <= self.start:
+            return None
+        spent = clock.perf_counter() - since.wall - self.stopped - (TURNS.seconds - since.compiling)
+        return spent * (self.end - self.time) / (self.time - self.start) + finish
 
     def line(self) -> str:
         """Progress of the run as one line of text."""
@@ -160,7 +170,7 @@ class Watch:
             task = bar.add_task(self.title, start=False, total=None, where="", left="")
             started = False
             while not self._wait(0.2):
-                if self.running_since is not None and not started:
+                if self.running is not None and not started:
                     bar.start_task(task)
                     started = True
                 left = self.left()

@@ -16,6 +16,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import AnyArray
 
 NAME = "series.csv"
+WORDS = frozenset({"body ()", "other body ()"})  # columns of names, of breaks.csv
 
 
 class Series:
@@ -83,7 +84,9 @@ def read_names(path: Path) -> list[str] | None:
 
 
 def read_series(path: Path) -> dict[str, AnyArray]:
-    """Columns by name, each (rows,) float64.  A torn last line is ignored; no file or no rows give {}.
+    """Columns by name, each (rows,) float64, or names of bodies (WORDS).
+
+    A torn last line is ignored; no file or no rows give {}.
 
     InputError naming the line where a row is damaged.
     """
@@ -97,13 +100,17 @@ def read_series(path: Path) -> dict[str, AnyArray]:
         if not rows:
             return {}
         table = np.zeros((len(rows) - 1, len(rows[0])))
+        words = [name in WORDS for name in rows[0]]
         for number, row in enumerate(rows[1:], 1):
             if len(row) != len(rows[0]):
                 raise ValueError(f"{len(row)} cells for {len(rows[0])} columns")
-            table[number - 1] = [float(cell) for cell in row]
+            table[number - 1] = [0.0 if word else float(cell) for cell, word in zip(row, words, strict=True)]
     except (ValueError, csv.Error) as error:
         reason = " ".join(str(error).split())
         repair = "run it again, or take the file from a backup"
         fault = Fault(f"line {number + 1}", None, f"is damaged ({reason})", repair=repair, file=str(path))
         raise InputError(fault) from None
-    return {name: table[:, column].copy() for column, name in enumerate(rows[0])}
+    return {
+        name: np.array([row[k] for row in rows[1:]]) if words[k] else table[:, k].copy()
+        for k, name in enumerate(rows[0])
+    }

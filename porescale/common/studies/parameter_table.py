@@ -63,7 +63,7 @@ def read_points(path: Path) -> list[Point]:
 
 
 def varied(options: Sequence[str]) -> list[Point]:
-    """Every combination of ``key=a,b,c`` options; InputError where one is not of that form.
+    """Every combination of ``key=a,b,c`` options; InputError where one is not of that form, or a key is given twice.
 
     Commas inside brackets or quotes belong to the value: ``domain.left=[0,1],[0,2]``.
     """
@@ -75,13 +75,26 @@ def varied(options: Sequence[str]) -> list[Point]:
             repair = "write it as --vary contact.friction=0.2,0.5"
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
         lists.append([f"{key.strip()}={part}" for part in parts])
+    _once([settings[0] for settings in lists], "--vary")
     return named(combinations(lists))
 
 
 def crossed(points: Sequence[Point], others: Sequence[Point]) -> list[Point]:
-    """Every point of one list with every one of the other laid over it."""
+    """Every point of one list with every one of the other laid over it; InputError where both set a key."""
+    for point in points:
+        _once((*point.settings, *others[0].settings), "--vary")
     pairs = itertools.product(points, others)
     return named([Point("", a.settings + b.settings, b.quality or a.quality) for a, b in pairs])
+
+
+def _once(settings: Iterable[str], source: str) -> None:
+    """InputError where a key is set twice."""
+    seen = set[str]()
+    for key in (text.partition("=")[0] for text in settings):
+        if key in seen:
+            repair = "give all of its values in one place"
+            raise InputError(Fault(key, None, "is given twice", repair=repair, file=source))
+        seen.add(key)
 
 
 def repeats(point: Point, choices: Iterable[tuple[str, ...]]) -> list[Point]:

@@ -17,12 +17,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-import h5py
 import numpy as np
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError, PorescaleError
-from porescale.common.core.hdf5 import writing
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import place
 from porescale.dem.contact.linear import Linear
@@ -248,6 +246,8 @@ def write_packing(path: Path, position: Floats, radius: Floats) -> None:
         writer.writerows([repr(value) for value in row] for row in table.tolist())
         write_bytes(path, text.getvalue().encode())
         return
+    from porescale.common.core.hdf5 import writing  # takes longer to import than a scene to be judged
+
     _judge_suffix(path)
     with writing(path) as file:
         for name, column in zip(("x", "y", "radius"), table.T, strict=True):
@@ -262,6 +262,8 @@ def read_packing(path: Path) -> tuple[Floats, Floats]:
     _judge_suffix(path)
     if path.suffix == ".csv":
         return read_circles(path)
+    import h5py
+
     try:
         with h5py.File(path, "r") as file:
             columns = [np.asarray(file[name][...], np.float64).ravel() for name in ("x", "y", "radius")]

@@ -34,9 +34,10 @@ class Sides:
     wall      half-way bounce-back; ``speed`` along itself (+x or +y)
     slip      free slip: a flat surface of water, a line of symmetry
     periodic  joined to the other side
-    velocity  the fluid comes in or goes out with ``velocity``, (ux, uy) or one for each cell, (n, 2); half-way
-              bounce-back at the density 1 of rest, so that the mass that passes is the sum of the velocities, exactly,
-              and two sides of equal velocity balance.  A wall that pushes (a piston of small stroke) is the same.
+    velocity  the fluid comes in or goes out with ``velocity``, (ux, uy) or one for each cell, (n, 2), linear between
+              them; half-way bounce-back at the density 1 of rest, so that the mass that passes is the sum of the
+              velocities, exactly, and two sides of equal velocity balance.  A wall that pushes (a piston of small
+              stroke) is the same.
     pressure  the fluid passes at ``density``, 1 + 3 p; its velocity is that of the cells inside (pressure.py)
     """
 

@@ -117,6 +117,17 @@ def test_tables_are_mappings_that_name_the_nearest_column(run):
     assert run.tables == ["series", "loads"]
 
 
+def test_a_table_with_names_of_bodies_is_read(run):
+    (run.folder / "breaks.csv").write_text("time (s),strength (N/m),body ()\n0.1,2.5,grain 3\n0.2,2.5,polygon 11\n")
+    breaks = run.table("breaks")
+    assert breaks["body ()"].tolist() == ["grain 3", "polygon 11"]
+    assert breaks["time (s)"].tolist() == [0.1, 0.2]
+    assert "polygon 11" in breaks._repr_html_()
+    (run.folder / "breaks.csv").write_text("time (s),strength (N/m),body ()\n0.1,grain 3,grain 3\n")
+    with pytest.raises(InputError, match=r"line 2: is damaged"):  # a word among numbers is still refused
+        run.table("breaks")
+
+
 def test_tables_become_data_frames(run):
     frame = run.table("loads").to_pandas()
     assert frame.index.name == "time (s)"

@@ -7,10 +7,17 @@ import pytest
 from rich.console import Console
 
 from porescale.common.compiled.turns import TURNS
+from porescale.common.duration import quiet
 from porescale.common.record import progress
 from porescale.common.record.cost import UNCOUNTED
 from porescale.common.record.progress import STARTING, Watch, duration
 from tests.reference.waiting import awaited
+
+
+@pytest.fixture(autouse=True)
+def alone(monkeypatch):
+    """No load that the tests do not make."""
+    monkeypatch.setattr(quiet, "scheduled", lambda: (1.0, 0.0))
 
 
 def watched(monkeypatch, terminal=False) -> str:
@@ -102,6 +109,26 @@ def test_time_left_counts_from_the_first_step_not_from_the_compiling(monkeypatch
     assert watch.left() == pytest.approx(4.9)
 
 
+def test_what_is_compiled_later_is_no_pace_of_steps(monkeypatch):
+    # Blocks of 0.1 s; the kernels of the first row, at the tenth block, take 20 s.
+    now = [0.0]
+    monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(TURNS, "seconds", 0.0)
+    watch = Watch("dam", 0.0, 10.0, quiet=True)
+    for k in range(1, 101):
+        now[0] += 0.1
+        if k == 10:
+            now[0] += 20.0
+            monkeypatch.setattr(TURNS, "seconds", 20.0)
+        watch.update(k, 0.1 * k)
+        if k > UNCOUNTED:
+            assert watch.left() == pytest.approx(10.0 - 0.1 * k, abs=1e-9)
+    # The twin that must fail: they count.
+    monkeypatch.setattr(TURNS, "seconds", 0.0)
+    watch.time = 5.0
+    assert watch.left() > 10.0
+
+
 @pytest.mark.parametrize(("share", "stopped"), [(0.0, 5.0), (0.5, 0.0)])  # the second is the twin: a busy machine
 def test_a_wait_that_lasts_too_long_without_the_processor_is_one_in_which_the_process_was_stopped(
     monkeypatch, share, stopped
@@ -144,10 +171,24 @@ def test_time_left_is_right_within_a_tenth_from_a_tenth_of_the_run_on(monkeypatc
     assert without is None
 
 
+def test_what_follows_the_steps_takes_as_much_longer_beside_others_as_they_did(monkeypatch):
+    # A third of a core: a block of 0.1 s takes 0.3 s, and the 8 s that follow take 24 s.
+    now = [0.0]
+    monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(quiet, "scheduled", lambda: (now[0] / 3.0, 2.0 * now[0] / 3.0))
+    ends = [0.3 * k for k in range(301)]
+    assert worst(Watch("dam", 0.0, 3.0, quiet=True, finish=8.0), now, ends, 24.0)[0] < 0.01
+    # The twin that must fail: what is left is said as of a quiet machine.
+    monkeypatch.setattr(quiet, "scheduled", lambda: (1.0, 0.0))
+    now[0] = 0.0
+    assert worst(Watch("dam", 0.0, 3.0, quiet=True, finish=8.0), now, ends, 24.0)[0] > 0.5
+
+
 def test_what_takes_longer_than_expected_after_the_steps_is_not_said_to_be_over(monkeypatch):
     now = [0.0]
     monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
     watch = Watch("dam", 0.0, 3.0, quiet=True, finish=8.0)
+    watch.update(1, 0.1)
     watch.enter("writing pictures and film")
     now[0] = 7.0
     assert watch.line().endswith(", 1 s left")  # the twin

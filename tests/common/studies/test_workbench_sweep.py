@@ -80,6 +80,15 @@ def test_options_are_split_at_commas_outside_brackets_and_quotes():
     assert [(point.settings, point.quality) for point in both] == [(("a=1", "b=3"), "fine"), (("a=2", "b=3"), None)]
 
 
+def test_a_key_that_is_given_twice_is_refused():
+    for wrong in (
+        lambda: varied(["a=1,2", "b=3", "a=4"]),
+        lambda: crossed([Point("", ("b=1", "a=2"))], varied(["a=3"])),
+    ):
+        with pytest.raises(InputError, match=r"^--vary: a: is given twice; give all of its values in one place$"):
+            wrong()
+
+
 def test_names_are_folders_anywhere_and_differ():
     given = [Point("", ('a.b="x/../y"',)), *(Point(name, ()) for name in ("../up", "Same", "same", ".."))]
     assert [point.name for point in named(given)] == ["b=x_.._y", "up", "Same", "same-2", "point"]

@@ -1,8 +1,11 @@
 """What cannot go well is refused before it starts, or stopped with the particle and the reason."""
 
+import numpy as np
 import pytest
 
+import continuum_sph
 from continuum_sph.benchmarks.extremes import EXTREMES
+from continuum_sph.builders.parts import soil
 from porescale.common.evidence.extremes import REFUSED, STOPPED
 
 
@@ -29,3 +32,21 @@ def test_what_leaves_sense_is_stopped_and_named(value, named):
     row = found("leaving the domain", value)
     assert row.end == STOPPED
     assert named in row.said
+
+
+def test_a_tank_far_wider_than_its_ground_has_no_lattice_of_its_width(monkeypatch):
+    scene, real, looked_at = continuum_sph.load("dry_slope"), soil.square_lattice, []
+
+    def lattice(*words):
+        found = real(*words)
+        looked_at.append(len(found))
+        return found
+
+    monkeypatch.setattr(soil, "square_lattice", lattice)
+    narrow, wide = (soil.soil_particles(it) for it in (scene, scene.with_({"tank.width": 9e4})))
+    spacing = scene.numerics.spacing
+    whole = scene.tank.width * scene.tank.height / spacing**2
+    assert looked_at[0] <= whole  # cells of the tank as it is
+    assert looked_at[1] <= 1.1 * whole  # and at most a row and a column beyond the ground, not 25 000 times as many
+    assert all(a.tobytes() == b.tobytes() for a, b in zip(narrow, wide, strict=True))
+    assert np.isfinite(narrow[1]).all()

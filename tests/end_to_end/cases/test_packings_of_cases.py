@@ -34,33 +34,38 @@ def test_a_row_of_lambda_with_slow_packings_has_their_median_and_no_deviation():
     assert made.spread([0.4, math.inf, 0.42, 0.44, math.inf], 1.0, 2) == "median 0.44, 2 of 5 > 0.5"
     assert made.spread([0.4, math.inf], 1.0, 2) == "1 of 2 > 0.5"  # the median is beyond the end as well
     assert made.spread([math.inf] * 3, 1.0, 2) == "> 0.5"
-    runs = {("draft", 0.8): [{"commit": "a", "rows": falling(at)} for at in (0.2, 0.3, 0.9)]}
-    row = made.table(runs)[-1]
+    row = made.table({("draft", 0.8, "a"): [falling(at) for at in (0.2, 0.3, 0.9)]})[-1]
     assert "| median 0.30, 1 of 3 > 0.5 |" in row
     assert row.endswith("| a |")
 
 
-def test_a_row_of_lambda_mixes_no_commits():
-    made = script("column_collapse/lambda.py")
-    one, other = ({"commit": commit, "rows": falling(0.3)} for commit in ("a", "b"))
-    assert len(made.table({("draft", 0.8): [one, one], ("draft", 0.9): [other]})) == 4
-    with pytest.raises(SystemExit, match="runs of several commits, a, b: not mixed"):
-        made.table({("draft", 0.8): [one, other]})
+def opened(card, **tables):
+    """In place of ``ps.open_run``: a run with this card, and these tables beside its series."""
+
+    class Opened:
+        outcome, commit, series = card["outcome"], card["commit"], tables.pop("series")
+
+        def table(self, name):
+            return tables[name]
+
+    Opened.card = card
+    return lambda path: Opened()
 
 
-def test_lambda_reads_the_runs_of_a_sweep_up_to_its_end(tmp_path, monkeypatch):
+def test_lambda_reads_the_runs_of_a_sweep_up_to_its_end_and_mixes_no_commits(tmp_path, monkeypatch):
     made = script("column_collapse/lambda.py")
     (tmp_path / "seed=1").mkdir()
     time = np.arange(0.0, 0.8, 0.005)
     series = {"time (s)": time, "centre of mass y (m)": 0.036 - 0.03 * time, "front (m)": 0.09 - 0.1 * time}
     (tmp_path / "seed=1" / "card.json").write_text("{}")
-    card = {"outcome": "finished", "quality": "draft", "commit": {"hash": "0123456789", "changed": True}}
+    card = {"outcome": "finished", "quality": "draft", "commit": "a"}
     card |= {"scene": {"grains": {"hydraulic_radius_ratio": 0.8}}}
-    monkeypatch.setattr(ps, "open_run", lambda path: type("Run", (), {"card": card, "series": series}))
-    ((key, (run,)),) = made.swept([tmp_path]).items()
-    assert (key, run["commit"]) == (("draft", 0.8), "01234567+")
-    assert np.array(run["rows"]) == pytest.approx(np.array([column[:101:2] for column in series.values()]).T)
-    card["outcome"] = "unstable"
+    monkeypatch.setattr(ps, "open_run", opened(card, series=series))
+    ((key, (rows,)),) = made.swept([tmp_path]).items()
+    assert key == ("draft", 0.8, "a")
+    assert np.array(rows) == pytest.approx(np.array([column[:101] for column in series.values()]).T)
+    assert len(made.table({key: [rows], ("draft", 0.8, "b"): [rows]})) == 4
+    monkeypatch.setattr(ps, "open_run", opened(card | {"outcome": "unstable"}, series=series))
     assert made.swept([tmp_path]) == {}
 
 
@@ -70,15 +75,46 @@ def test_a_bed_that_never_gets_there_has_no_mean_in_its_table():
     assert made.spread([12.0, math.inf, 14.0]) == "median 14, 1 of 3 never"
     assert made.spread([12.0, math.inf]) == "1 of 2 never"
     time = np.linspace(0.0, 1.0, 41)
-    still = np.array([time, 0 * time + 0.024, 0 * time + 0.0168, 0 * time + 300.0]).T.tolist()
-    one = {"commit": "a", "fraction": 0.8, "rows": still, "tops": [0.01] * 48}
+    still = np.array([time, 0 * time + 0.024, 0 * time + 0.0168, 0 * time + 300.0]).T
+    one = {"fraction": 0.8, "rows": still, "profile": {0.001: 0.01, 0.002: 0.01}}
     row = next(line for line in made.table({"dense": [one, one]}) if line.startswith("| dense"))
     assert "| never |" in row
     assert "inf" not in row
     assert "nan" not in row
-    assert made.commit_of({"dense": [one], "loose": [one]}) == "a"
-    with pytest.raises(SystemExit, match="runs of several commits, unknown, a: not mixed"):
-        made.commit_of({"dense": [one], "loose": [{"rows": still}]})
+
+
+@pytest.mark.parametrize(
+    ("packing", "bed"),
+    [((True, 0.0), "dense"), ((True, 1.0), "medium"), ((False, 0.0), "loose")],
+)
+def test_beds_are_told_apart_and_not_mixed_over_commits(tmp_path, monkeypatch, packing, bed):
+    made = script("loose_and_dense_collapse/compare.py")
+    for name in "ab":
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "card.json").write_text("{}")
+    settle, friction = packing
+    card = {"scene": {"grains": {"packing": {"settle": settle, "settling_friction": friction}}}}
+    card |= {"outcome": "finished", "commit": "a"}
+    time = np.linspace(0.0, 0.9, 5)
+    tables = {
+        "series": {"time (s)": time, "front (m)": 0.024 + time, "highest grain (m)": 0.02 - 0.01 * time},
+        "regions": {"column porosity ()": 0.2 + 0 * time}, "probes": {"probe 1 mean pressure (Pa)": 235.0 + time},
+        "profile": {"time (s)": time, "height at x = 0.001 m (m)": 0.01 + time},
+    }  # fmt: skip
+    monkeypatch.setattr(ps, "open_run", opened(card, **tables))
+    beds, commits = made.read(tmp_path)
+    assert (list(beds), len(beds[bed]), commits) == ([bed], 2, {"a"})
+    one = beds[bed][0]
+    assert one["fraction"] == pytest.approx(0.8)
+    assert one["profile"] == {0.001: pytest.approx(0.91)}
+    rows = np.array([*tables["series"].values(), 235.0 + time]).T
+    assert one["rows"] == pytest.approx(rows)
+    made.draw(beds, tmp_path / "compare.png")
+    cards = iter([card, card | {"commit": "b"}])
+    monkeypatch.setattr(ps, "open_run", lambda path: opened(next(cards), **tables)(path))
+    monkeypatch.setattr("sys.argv", ["compare.py", str(tmp_path)])
+    with pytest.raises(SystemExit, match="finished runs of 2 commits, where one is needed"):
+        made.main()
 
 
 def test_a_refused_sweep_writes_no_table(tmp_path, monkeypatch):
@@ -92,20 +128,3 @@ def test_a_refused_sweep_writes_no_table(tmp_path, monkeypatch):
     done[0] = 2
     with pytest.raises(SystemExit, match="the sweep was refused: nothing is written"):
         writer["ensemble"](tmp_path, tmp_path)
-
-
-@pytest.mark.parametrize("name", ["column_collapse/lambda.py", "loose_and_dense_collapse/compare.py"])
-def test_a_run_is_kept_with_the_commit_of_the_tree(name, tmp_path, monkeypatch):
-    made = script(name)
-    head = ["git", "-C", str(tmp_path)]
-    monkeypatch.setattr(made, "HERE", tmp_path)
-    assert made.commit() == ""
-    subprocess.run([*head, "init", "-q"], check=True)
-    (tmp_path / "scene.toml").write_text("a")
-    subprocess.run([*head, "add", "."], check=True)
-    who = ["-c", "user.name=a", "-c", "user.email=a@b"]
-    subprocess.run([*head, *who, "commit", "-q", "-m", "a"], check=True)
-    whole = subprocess.run([*head, "rev-parse", "HEAD"], check=True, capture_output=True, text=True).stdout
-    assert made.commit() == whole[:8]
-    (tmp_path / "scene.toml").write_text("b")
-    assert made.commit() == whole[:8] + "+"

@@ -69,3 +69,18 @@ def test_a_scene_is_checked_before_numba_is_imported_whatever_is_wrong_with_it(t
     code, compiler, lines = run(package, "run", scene, "--threads", 0, "--out", tmp_path / "out")
     assert (code, compiler, len(lines)) == (2, True, 1)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("package", "case"), [("porescale", "column_collapse"), ("continuum_sph", "collapsing_water_column")]
+)
+def test_what_only_a_run_needs_check_does_not_wait_for(package, case):
+    script = SCRIPT.replace('print("numba" in sys.modules)', "print(sorted(set(sys.modules) & set(HEAVY)))")
+    code = f"HEAVY = {HEAVY}\n{script.format(first=FIRST[package])}"
+    ended = done([sys.executable, "-c", code, "check", case], cwd=ROOT)
+    assert (ended.returncode, ended.stdout.splitlines()[-1]) == (0, "[]"), ended.stderr
+    ended = done([sys.executable, "-c", f"import scipy, h5py\n{code}", "check", case], cwd=ROOT)  # the twin
+    assert ended.stdout.splitlines()[-1] == "['h5py', 'scipy']"
+
+
+HEAVY = ("numba", "scipy", "h5py", "matplotlib", "contourpy", "PIL", "av")

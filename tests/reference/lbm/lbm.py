@@ -155,10 +155,19 @@ class Lattice:
         owners = self.owners(self.crossed(x, y, cx, cy))
         kind = self.side(owners[0])[0] if owners else None
         if kind == "velocity":
-            each = [np.broadcast_to(self.side(n)[1], (y + x + 1, 2)) if np.ndim(self.side(n)[1]) == 1 else
+            each = [np.broadcast_to(self.side(n)[1], (self.ny + self.nx, 2)) if np.ndim(self.side(n)[1]) == 1 else
                     np.asarray(self.side(n)[1]) for n in owners]  # fmt: skip
-            cell = [y if name in ("left", "right") else x for name in owners]
-            ux, uy = np.mean([velocity[at] for velocity, at in zip(each, cell, strict=True)], 0)
+            given = []
+            for name, velocity in zip(owners, each, strict=True):
+                own, to = (y, ty) if name in ("left", "right") else (x, tx)
+                if len(solid) == 2:  # a corner: no neighbour there, and nothing along the side into what is closed
+                    closed = set(kinds.values()) & {"wall", "slip"}
+                    along_x = name in ("bottom", "top")
+                    keep = np.array([not (closed and along_x), not (closed and not along_x)])
+                    given.append(velocity[own] * keep)
+                else:  # where the link crosses the side, midway between its cell and the one that it leads to
+                    given.append((velocity[own] + velocity[to]) / 2)
+            ux, uy = np.mean(given, 0)
             return x, y, back, 6 * W[back] * (-cx * ux - cy * uy)
         if kind == "pressure":
             return x, y, back, 0.0  # overwritten
