@@ -29,6 +29,20 @@ class Body(Section):
             highest = np.where(over, np.maximum(highest, y), highest)
         return highest
 
+    def crosses(self) -> bool:
+        """Whether two sides of the outline cross each other; sides that only touch do not."""
+        corners = np.array(self.outline)
+        sides = list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
+
+        def turn(a: Floats, b: Floats, c: Floats) -> float:
+            return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+
+        return any(
+            turn(a, b, c) * turn(a, b, d) < 0.0 and turn(c, d, a) * turn(c, d, b) < 0.0
+            for k, (a, b) in enumerate(sides)
+            for c, d in sides[:k]
+        )
+
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which of ``points`` (n, 2) m lie inside: an odd number of sides to their right."""
         x, y = points[:, 0], points[:, 1]
@@ -136,6 +150,9 @@ class SoilSection(Section):
         for key, body in ((f"soil.{kind}[{k}].outline", it) for kind, of in outlines for k, it in enumerate(of)):
             if len(body.outline) < 3:
                 found.append(Fault(key, len(body.outline), "corners hold nothing", "", ">= 3"))
+            elif body.crosses():
+                problem = "crosses itself"
+                found.append(Fault(key, None, problem, repair="give the corners in their order around the body"))
             for x, y in body.outline:
                 if not (-slack <= x <= width + slack and -slack <= y <= height + slack):
                     found.append(Fault(key, (x, y), "lies outside of the tank", "m"))
