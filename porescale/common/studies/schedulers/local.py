@@ -35,7 +35,10 @@ class Local:
                 process = self.process(task, place)
                 alive.append(process)
                 try:
-                    return Done(task, INTERRUPTED, "") if stopped else Done(task, *process.run())
+                    began = progress.now()
+                    return (
+                        Done(task, INTERRUPTED, "") if stopped else Done(task, *process.run(), progress.now() - began)
+                    )
                 except BaseException:
                     stopped = True
                     raise
