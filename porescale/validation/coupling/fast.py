@@ -44,7 +44,7 @@ def started(
 ) -> tuple[float, float]:
     """Mean drag coefficient over 1 <= t U/D <= 3, and the noise: rms about a smooth curve over the mean.
 
-    degrees: between the direction and the lattice;  held: the cylinder stays and the fluid comes.
+    degrees: between the direction and the lattice;  held: the cylinder stands and the fluid comes.
     """
     across, along = round(wide * diameter), round(0.75 * wide * diameter)
     periodic = Sides("periodic", "periodic", "periodic", "periodic")
@@ -52,6 +52,8 @@ def started(
     wet = SaturatedCells(fluid, np.array([diameter / 2]), solid_operator=solid_operator, soft_rim=soft_rim)
     direction = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
     motion = speed * direction[None]
+    if held and wet.soft_rim:
+        wet.soft_rim.stands[:] = True
     place = np.array([[across / 2 + 0.3, along / 2 + 0.1]]) - (0 if held else 1.5 * diameter * direction)
     (x, y), (u, v) = place[0], motion[0]
     potential_start(fluid, x, y, diameter / 2, u, v)
