@@ -11,7 +11,7 @@ of the body, estimated from the slip at its rim, w = sum e (1 - e)|v - u| / sum 
     cells       k = tau - 1/2 + 0.24 theta |v - u|, and the odd rate that of SC1 in theta (solid/exact_wall.py)
 
 A disc that stands frees and covers no cells, so nothing shakes and nothing need be filtered: its cells are those of the
-exact wall, and it is only drawn in, since fast flow stops in every cell that it touches, half a cell before its outline:
+exact wall, and it is only drawn in, since fast flow stops in every cell that it touches, half a cell before its rim:
 
     radius      r_c = r - 0.4 theta - 0.3 theta2 + (A/r)(1 - theta)
 
