@@ -291,7 +291,7 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
         out.row("time on the CPU", told.seconds[STEPS], "s", told.known)
         seconds = _device(scene, derived, steps, told.seconds[STEPS], out)
     else:
-        report_time(out, told)
+        report_time(out, work(scene, derived))
     if seconds > WEEK:
         out.warn(
             f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "

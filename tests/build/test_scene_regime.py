@@ -4,8 +4,10 @@ import math
 
 import pytest
 
+from porescale.builders.build import build
 from porescale.builders.checks.regime import column_height, fall, terminal_speed
 from porescale.builders.derive import derive
+from porescale.common.core.errors import InputError
 from tests.reference.scenes import column, dry, grain, water
 
 ONE = {"grains": {"density": 2500, "hydraulic_radius_ratio": 1.0, "grain": [grain(0.003, 0.002)]}, "gate": None}
@@ -54,3 +56,47 @@ def test_a_body_force_is_reckoned_with_grains_in_its_way_too():
     pushed = {"fluid__body_force": [10.0, 0.0], "domain__left": "periodic", "domain__right": "periodic"}
     still = column(**ONE, gravity=[0, 0], **pushed)
     assert derive(still).speed == derive(water()).speed == pytest.approx(10 * 0.008**2 / 0.16, rel=1e-12)
+
+
+def warned(scene, word):
+    """The warnings with a word in them."""
+    return [line for line in derive(scene).warnings if word in line]
+
+
+INLET = {"domain__left": {"kind": "velocity", "velocity": [0.01, 0.0]}, "fluid__body_force": None, "time__end": 0.06}
+
+
+def test_a_box_that_is_filled_and_has_no_outlet_is_warned_of_and_refused():
+    # 0.01 m/s for 0.06 s into 12 mm: a twentieth of its fluid, and so much denser does it get.
+    (line,) = warned(water(**INLET, domain__right="wall"), "let 0.05 of the fluid in")
+    simulation = build(water(**INLET, domain__right="wall"))
+    simulation.run()
+    assert simulation.series()["fluid mass change ()"] == pytest.approx(0.05, rel=0.01)
+    assert line.endswith('make one { kind = "pressure", pressure = 0 }')
+    with pytest.raises(InputError, match=r"^domain: the sides let 0\.5 of the fluid in until time\.end, and none"):
+        derive(water(**{**INLET, "time__end": 0.6}, domain__right="wall"))
+
+
+@pytest.mark.parametrize("right", ["pressure", {"kind": "velocity", "velocity": [0.01, 0.0]}])
+def test_what_is_let_out_again_is_not_warned_of(right):
+    assert not warned(water(**INLET, domain__right=right), "let ")
+
+
+def test_gravity_down_a_periodic_channel_is_said_to_drive_no_fluid():
+    down = {"gravity": [1.0, -9.81], "domain__left": "periodic", "domain__right": "periodic"}
+    (line,) = warned(water(**down, fluid__body_force=None), "gravity along x")
+    assert line.endswith("fluid.body_force = [1000, 0] drives it")
+    simulation = build(water(**down, fluid__body_force=None))
+    simulation.advance(20)
+    assert simulation.series()["largest fluid speed (m/s)"] == 0.0
+    assert not warned(water(**down, fluid__body_force=[10.0, 0.0]), "gravity along x")
+    assert not warned(water(**{**down, "gravity": [0.0, -9.81]}, fluid__body_force=None), "gravity along x")
+    sinking = {"domain__bottom": "periodic", "domain__top": "periodic"}
+    assert not warned(column(**ONE, **sinking), "gravity along y")
+
+
+def test_a_relaxation_time_at_which_no_flow_begins_right_is_warned_of():
+    channel = {"domain__left": "periodic", "domain__right": "periodic", "gravity": [0, 0], "fluid__body_force": None}
+    (line,) = warned(water(**channel, fluid__step=1e-2), "relaxation time")
+    step = float(line.partition("a step of ")[2].partition(" s")[0])
+    assert not warned(water(**channel, fluid__step=step), "relaxation time")

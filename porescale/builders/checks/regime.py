@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from porescale.builders.checks.flows import check_flows
 from porescale.builders.checks.limits import (
     CELLS_THICK,
     DENSITY_REFUSE,
@@ -186,6 +187,7 @@ def check_regime(
     _check_thickness(scene.rectangle, scales, warnings)
     check_sound(scene, scales, warnings)
     check_gate(scene, scales, warnings)
+    check_flows(scene, scales, sizes is not None, faults, warnings)
     if scene.ring and scene.ring.diameter < RING_CELLS * scales.spacing:
         repair = f"a spacing of {scene.ring.diameter / RING_CELLS:.2g} m gives it so many"
         cells, allowed = (

@@ -6,14 +6,12 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from porescale.common.core.errors import InputError
-from porescale.common.duration.expected import COMPILING, STEPS, Expected
+from porescale.common.duration.expected import COMPILING, STEPS, Work, expected
 from porescale.common.duration.quiet import BUSY, load_now
 from porescale.common.record.schedule import recorded, too_many
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from porescale.common.duration.expected import Work
 
 ROW = 300
 """Bytes of a row of series.csv, about."""
@@ -108,8 +106,12 @@ class Report:
             console.print(Text(f"warning: {warning}", style="yellow"), soft_wrap=True)
 
 
-def report_time(out: Report, told: Expected) -> None:
-    """Add how long a run takes on a quiet machine, of what, and beside what runs on it now where that is much more."""
+def report_time(out: Report, work: Work) -> None:
+    """Add how long a run takes on a quiet machine, of what, and beside what runs on it now where that is much more.
+
+    work : what it has to do; the report keeps it.
+    """
+    out.work, told = work, expected(work)
     compiling, steps = told.seconds[COMPILING], told.seconds[STEPS]
     out.row("time", told.total, "s", told.known)
     out.row("of it compiling", compiling, "s", "kernels that are not kept on disk")

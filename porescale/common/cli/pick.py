@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 import shlex
 import sys
-import tempfile
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,12 +19,6 @@ if TYPE_CHECKING:
 
 FREE = "title", "output.", "quality_default"
 """Keys that change neither errors nor what steps cost."""
-BLOCK = 6
-"""Snapshots more of the longer one of two short runs that show what a snapshot costs."""
-SHORT = 2.0
-"""Seconds of steps in the longer one, at most."""
-LITTLE = 0.05
-"""Share of a budget that a try of the record may take."""
 
 
 def pick(
@@ -35,6 +27,7 @@ def pick(
     """The point, printed on stderr with expected cost and error; InputError on wrong
     options, no front, or nothing that fits."""
     from porescale.common.core.machine import age
+    from porescale.common.duration.expected import besides
     from porescale.common.schema.scene_file import find
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.front import begun, choose, read_front
@@ -44,13 +37,11 @@ def pick(
     file = find(scene)
     front = read_front(file, _end(open_scene(file, package.scene(), overrides=settings).scene))
 
-    record = _Record(package, file, settings, seconds)
-
     def here(point: FrontPoint) -> Here:
         """The beginning of the point's scene, and the time it is to simulate, s, where its scene says that."""
         opened = open_scene(file, package.scene(), quality=point.quality, overrides=(*point.settings, *settings))
-        package.report(opened.scene)  # what contradicts itself is refused
-        return begun(lambda: package.build(opened.scene), _end(opened.scene), record.of(point))
+        more = besides(package.report(opened.scene).work)  # what contradicts itself is refused
+        return begun(lambda: package.build(opened.scene), _end(opened.scene), more)
 
     try:
         choice = choose(front, allowed, seconds, here, age)
@@ -130,67 +121,6 @@ def better_level(package: Package, file: Path, front: Front, error: float) -> st
             words = f"--quality {name}" if name else " ".join(f"--set {shlex.quote(it)}" for it in point.settings)
             return f"{words} is {what}, {point.core_seconds:.3g} core-seconds"
     return ""
-
-
-@dataclass
-class _Record:
-    """What snapshots, rows, pictures and film take here: tried once, for the first point that is asked for.
-
-    Two short runs tell what is theirs alone from what each snapshot adds; where the first takes more than LITTLE of the
-    budget, it is the only one, and what the front has is scaled.
-    """
-
-    package: Package
-    file: Path
-    settings: Sequence[str]
-    budget: float | None
-    known: tuple[FrontPoint, float] | None = None
-
-    def of(self, point: FrontPoint) -> Callable[[float, float], float] | None:
-        """What gives the seconds for a run of a point from the simulated and wall-clock seconds of a step; None where
-        a scene does not say how long it is."""
-        whole = self._opened(point).scene
-        end, output = _end(whole), getattr(whole, "output", None)
-        return None if end is None or output is None else lambda step, wall: self._took(point, whole, step, wall)
-
-    def _took(self, point: FrontPoint, whole: Any, step: float, wall: float) -> float:
-        if self.known:
-            like, seconds = self.known
-            return seconds * (point.besides / like.besides if point.besides and like.besides else 1.0)
-        end, output, seconds = float(whole.time.end), whole.output, 0.0
-        snapshots = min(math.ceil(end / output.snapshot_interval), math.ceil(end / step))
-        rows = max(1, min(round(output.snapshot_interval / output.series_interval), int(SHORT / wall) // BLOCK, 50))
-        first = self._short(point, 1, rows, step) - rows * wall
-        if self.budget is not None and first > LITTLE * self.budget:
-            seconds = max(first, end / point.time * point.besides * wall / point.pace)
-        else:
-            warm, longer = (
-                self._short(point, count, rows, step) - count * rows * wall for count in (1, 1 + BLOCK)
-            )  # fmt: skip
-            one = max(longer - warm, 0.0) / BLOCK
-            seconds = max(warm - one, 0.0) + snapshots * one
-        self.known = point, seconds
-        return float(seconds)
-
-    def _short(self, point: FrontPoint, count: int, rows: int, step: float) -> float:
-        """Seconds of a run of ``count`` snapshot intervals of ``rows`` rows, of a step (s) each."""
-        from porescale.common.api.run_scene import card_of
-
-        each = {"time.end": count * rows * step, "output.snapshot_interval": rows * step,
-                "output.series_interval": step}  # fmt: skip
-        opened = self._opened(point, *(f"{key}={value!r}" for key, value in each.items()))
-        with tempfile.TemporaryDirectory() as made:
-            model, before = self.package.build(opened.scene), time.perf_counter()
-            model.building = None  # a try is no run that others are expected to be like
-            card = card_of(self.package, opened)
-            self.package.drive(model, Path(made) / "run", opened.scene, card=card, resume=False, quiet=True)
-            return float(time.perf_counter() - before)
-
-    def _opened(self, point: FrontPoint, *more: str) -> Any:
-        from porescale.common.schema.sections import open_scene
-
-        words = (*point.settings, *self.settings, *more)
-        return open_scene(self.file, self.package.scene(), quality=point.quality, overrides=words)
 
 
 def share(option: str, text: str) -> float:

@@ -76,6 +76,14 @@ def expected(work: Work) -> Expected:
     return Expected(seconds, bool(like))
 
 
+def besides(work: Work | None) -> float | None:
+    """Seconds of what follows the start of a run and is no step; None where nothing says what it has to do."""
+    if work is None:
+        return None
+    seconds = expected(work).seconds
+    return seconds[RECORDING] + seconds[FINISHING]
+
+
 def _like(work: Work) -> list[dict[str, Any]]:
     """The runs of the same scene on as many threads; where there is none, on others; and else, of its kind."""
     kind = [run for run in _runs() if run["kind"] == work.kind]

@@ -18,6 +18,7 @@ from typing import Any
 from porescale.common.api.run_scene import card_of
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.duration.expected import besides
 from porescale.common.evidence.benchmarks import Benchmarks, Dtype, Work
 from porescale.common.record.read_card import read_card
 from porescale.common.schema.scene_file import find
@@ -78,7 +79,8 @@ def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
         raise InputError(Fault("--size", which, "is not a point of the front", "", f"1 to {len(front.points)}"))
     point = chosen.points[0]
     opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
-    choice = choose(chosen, point.error, None, lambda _: begun(lambda: package.build(opened.scene)))
+    more = besides(package.report(opened.scene).work)
+    choice = choose(chosen, point.error, None, lambda _: begun(lambda: package.build(opened.scene), None, more))
     with tempfile.TemporaryDirectory() as made:
         folder, before = Path(made) / "run", time.perf_counter()
         model = package.build(opened.scene)

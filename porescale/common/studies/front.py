@@ -3,8 +3,9 @@
 front.json lies beside the scene it was measured for (`study trade` makes it).  What it keeps are core-seconds, of steps
 and besides, of another machine, which hardly depend on the load of that machine; and every point's pace, core-seconds
 of a step of a run that had just begun.  The same beginning is timed here before a prediction is given: its wall-clock
-pace over that of the front rescales the steps; start-up, snapshots and pictures are what they take here.  Expected
-seconds are those of the whole command, from the start of its process.
+pace over that of the front rescales the steps; start-up is timed, and rows, snapshots and pictures are what they are
+expected to take here (duration/expected.py).  Expected seconds are those of the whole command, from the start of its
+process.
 
 A point of which trade.toml says a ``but`` is none of the front for runs to which that applies.
 """
@@ -19,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.duration.quiet import moment, share
 from porescale.common.studies.trade_files import FORMAT, FRONT
 
 WARM_UP = 3
@@ -235,19 +237,18 @@ def _here(point: FrontPoint, try_here: Try) -> Choice:
     return Choice(point, seconds, slowness, longer * point.core_seconds * here.core / point.pace, longer)
 
 
-def begun(
-    build: Callable[[], Any], end: float | None = None, besides: Callable[[float, float], float] | None = None
-) -> Here:
+def begun(build: Callable[[], Any], end: float | None = None, besides: float | None = None) -> Here:
     """What a model takes to be built and to begin: built twice, since the first time its kernels compile.
 
-    besides : gives the seconds of all that is no step, from the simulated and the wall-clock seconds of a step.
+    besides : seconds of all that is no step, on a quiet machine; here they take as much longer as the steps.
     """
     build()
     before = time.perf_counter()
     model = build()
     start = time.perf_counter() - before
+    began = moment()
     wall, core = pace_of(model)
-    return Here(wall, core, start, end, besides(model.time / model.step, wall) if besides else None)
+    return Here(wall, core, start, end, None if besides is None else besides / share(began, moment()))
 
 
 def pace_of(model: Any) -> tuple[float, float]:

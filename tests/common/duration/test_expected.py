@@ -16,6 +16,7 @@ from porescale.common.duration.expected import (
     RECORDING,
     STEPS,
     Work,
+    besides,
     expected,
     remember,
 )
@@ -59,6 +60,8 @@ def test_a_run_teaches_what_the_next_one_takes(monkeypatch):
     told = expected(work(times=2.0))
     assert told.measured
     assert told.known != GUESS
+    assert besides(work(times=2.0)) == pytest.approx(3.0 * 2.0 * (2.0 + 4.0), rel=1e-12)
+    assert besides(None) is None
     assert told.total == pytest.approx(BEGIN + 3.0 * 2.0 * (sum(NOMINAL.values()) - 50.0), rel=1e-12)
 
 

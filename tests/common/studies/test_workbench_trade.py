@@ -13,7 +13,9 @@ import pytest
 
 from porescale.common.core.errors import InputError
 from porescale.common.core.statistics import half_width
+from porescale.common.duration.quiet import Moment
 from porescale.common.schema.sections import validate
+from porescale.common.studies import front as module
 from porescale.common.studies import trade_files
 from porescale.common.studies.ensemble import Repeats
 from porescale.common.studies.front import FrontPoint, Here, begun, choose, pace_of, read_front
@@ -303,6 +305,17 @@ def test_the_age_of_the_command_counts_and_grows_with_every_try(measured_front):
     clock[0] = 3.0
     late = choose(measured_front, None, 38.0, slow_try, lambda: clock[0])
     assert (late.point.label, late.seconds) == ("0.2", 17.0 + 10.0)  # 37 s are beyond 0.95 · 38: the try is paid for
+
+
+def test_what_is_besides_takes_as_much_longer_beside_others_as_the_steps(monkeypatch):
+    # A quarter of a core: 4 s of a quiet machine are 16 s here.
+    moments = iter((Moment(0.0, 0.0, 0.0), Moment(8.0, 2.0, 6.0)))
+    monkeypatch.setattr(module, "moment", lambda: next(moments))
+    monkeypatch.setattr(module, "pace_of", lambda _: (1.0, 1.0))
+    assert module.begun(object, besides=4.0).besides == pytest.approx(16.0, rel=1e-12)
+    monkeypatch.setattr(module, "moment", lambda: Moment(0.0, 0.0, 0.0))
+    assert module.begun(object, besides=4.0).besides == 4.0  # the twin: alone
+    assert module.begun(object).besides is None
 
 
 def test_what_is_besides_is_what_it_takes_here_where_that_is_known(measured_front):
