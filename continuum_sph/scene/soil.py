@@ -63,19 +63,21 @@ class SoilNumerics(Section):
     """Numerics that damp the noise of soil particles and keep them evenly spaced; see `continuum_sph.soil.momentum`.
 
     Maeda & Sakai 2004: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
-    damping_viscosity : damping goes as alpha, the speed of sound c and h; prescribed as their product it is the same
-    whatever the stiffness and the spacing are, and with it how far a tongue of soil slides.
+    damping, damping_viscosity, stress_diffusion : left out, they follow from gravity and the ground's height and
+    stiffness, see `continuum_sph.soil.steadying`; "approach" has 0.2.
     """
 
     gradient: Literal["corrected", "plain"] = pydantic.Field(
         default="corrected", description="gradients of the velocity"
     )
-    damping: float = quantity("", 0.2, ge=0, le=4, help="alpha of the damping")
+    damping: float | None = quantity("", None, ge=0, le=4, help="alpha of the damping")
     damping_of: Literal["zig-zags", "approach"] = pydantic.Field(
         default="zig-zags", description="what the damping acts on"
     )
     damping_viscosity: float | None = quantity("m^2/s", None, ge=0, le=1e6, help="alpha c h, in place of damping")
-    stress_diffusion: float = quantity("", 100.0, ge=0, le=1000, help="diffusion of stress and volume per shear strain")
+    stress_diffusion: float | None = quantity(
+        "", None, ge=0, le=1000, help="diffusion of stress and volume per shear strain"
+    )
     restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="the same by sound: soil creeps")
     parting: float = quantity("", 4.0, ge=0, le=20, help="how fast particles too near part, per shear strain")
     repulsion: float = quantity("", 10.0, ge=0, le=100, help="what keeps soil that bears tension from clumping")
