@@ -1,187 +1,230 @@
 """One soil at two scales: grains make a material file, and the continuum that reads it does what the grains do."""
 
 import math
-from dataclasses import dataclass
+import sys
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
 import numpy as np
+from compared import HEAD, Compared, half, half_of, power
+from falls import Fall, grains_fall, soil_falls
+from flows import Bed, bed, darcy
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import continuum_sph as cs
 import porescale as ps
 from continuum_sph.builders import material_of
-from continuum_sph.validation.seepage import permeameter
 from continuum_sph.validation.soil import element as lab
 from porescale import GRAVITY, Floats
-from porescale.output import conclude, options, stage
+from porescale.output import conclude, options
 
 HERE = Path(__file__).resolve().parent
-STILL, TAPS = 0.05, (0.005, 0.015)
-"""s from where on flux and pressure of a bed are averaged: flooded, it rebounds on its contacts for a while, with a
-period of 11 ms; heights (m) between which the pressure is taken."""
-EVERY = 0.0025  # s between looks at a bed
-FLOWS = 2400  # steps after which the continuum's permeameter is steady
-BINS = np.arange(0.0, 0.2, 0.004)  # m, of the surfaces
-GRAINS, SOIL = "#8c1c2f", "#2a6f97"
+MIDDLE = 12  # rows of soil whose angle of friction is varied
+LITTLE = "soil.numerics.damping=0.05"
+"""A quarter of the damping that soil has if nothing is said."""
+FLOW_ROWS = (10, 20, 40)
+GRADIENT = 0.2
+SEEN: dict[str, tuple[str, Callable[[Fall], float]]] = {
+    "front, 95 % of the mass behind it": ("m", Fall.front),
+    "centre of mass at rest": ("m", lambda it: it.centre_at_rest),
+    "height at the wall": ("m", lambda it: it.height),
+    "time until the centre has gone 1 cm": ("s", Fall.when),
+}
+"""What is read of a column that fell: unit, and how."""
+FLOW, AT_POROSITY = "q over k i", "q over k i, k at the porosity of the bed"
+GRAINS, SOIL, LESS = "#8c1c2f", "#2a6f97", "#e9a23b"
 
 
 @dataclass
-class Fall:
-    """A column that fell: times (t,) s, x (t,) m of its centre, top (b,) m of its surface in BINS at the end."""
+class Columns:
+    """Columns that fell: of grains, one for each packing; of soil and of soil with little damping, one for each of
+    ``rows``; of soil whose angle is at either end of its interval."""
 
-    time: Floats
-    centre: Floats
-    top: Floats
+    rows: Sequence[int]
+    grains: list[Fall]
+    soil: list[Fall]
+    less: list[Fall]
+    ends: list[Fall] = field(default_factory=list)
+
+    def compared(self, less: bool = False) -> list[Compared]:
+        """Every quantity of SEEN at both scales, or with ``less`` damping of the soil."""
+        made = []
+        for name, (unit, of) in SEEN.items():
+            grains = np.array([of(it) for it in self.grains])
+            soil = np.array([of(it) for it in (self.less if less else self.soil)])
+            given = 0.5 * abs(of(self.ends[1]) - of(self.ends[0]))
+            made.append(Compared(name, unit, grains, self.rows, soil, given))
+        return made
 
 
-def ground(settings: tuple[str, ...] = ()) -> cs.Scene:
+def ground(settings: Sequence[str] = ()) -> cs.Scene:
     """The continuum's scene, which has taken over material.toml."""
     return cs.load(HERE / "ground.toml", settings=settings)
 
 
-def bed(seed: int) -> float:
-    """K (m²) of a bed of free grains that water is pressed through, from flux and taps, as in a laboratory."""
-    scene = ps.load(HERE / "bed.toml", settings=[f"grains.packing.seed={seed}"])
-    assert scene.fluid
-    simulation = ps.build(scene)
-    flux, drop = [], []
-    each = round(EVERY / simulation.step_seconds)
-    while simulation.time < scene.time.end - 0.5 * EVERY:
-        simulation.advance(each)
-        if simulation.time > STILL:
-            flux.append(simulation.tables()["flux"]["outlet volume flux (m²/s)"] / scene.domain.width)
-            drop.append(fall_of_pressure(simulation, scene.fluid.density))
-    gradient = float(np.mean(drop)) / (TAPS[1] - TAPS[0])
-    assert scene.fluid.viscosity
-    return scene.fluid.density * scene.fluid.viscosity * float(np.mean(flux)) / gradient
-
-
-def fall_of_pressure(simulation: ps.Simulation, density: float) -> float:
-    """Pressure (Pa) that the flow loses between the taps: that of the water in the rows there, without its weight."""
-    fields = simulation.snapshot().grids["fields"]
-    found = []
-    for y in TAPS:
-        row = round(y / fields.spacing[1])
-        rows = slice(row - 3, row + 3)
-        free = 1.0 - fields.cells["solid_fraction"][rows]
-        found.append(float((fields.cells["pressure"][rows] * free).sum() / free.sum()))
-    return found[0] - found[1] - density * GRAVITY * (TAPS[1] - TAPS[0])
-
-
-def darcy(porosity: float, k: float, gradient: float) -> float:
-    """Flux q of the continuum's permeameter of that soil over k i."""
-    column = permeameter.Permeameter(permeability=k, porosity=porosity, sound_speed=0.6 / k)
-    both = column.build(gradient)
-    for _ in range(FLOWS):
-        both.advance()
-    return permeameter.upward(both, 0.2 * column.height, 0.8 * column.height) / (k * gradient)
-
-
-def grains_fall(seed: int) -> Fall:
-    """The column of grains of column.toml."""
-    simulation = ps.build(ps.load(HERE / "column.toml", settings=[f"grains.packing.seed={seed}"]))
-    assert simulation.grains
-    d, rows = simulation.grains.discs, []
-    each = max(1, round(0.01 / simulation.step_seconds))
-    while simulation.time < simulation.scene.time.end:
-        rows.append((simulation.time, float(np.average(d.position[:, 0], weights=d.mass))))
-        simulation.advance(each)
-    time, centre = np.array(rows).T
-    return Fall(time, centre, surface(d.position, d.radius))
-
-
-def soil_falls(angle: float) -> Fall:
-    """The column of soil of ground.toml with another angle of friction (rad)."""
-    scene = ground((f"soil.friction_angle={angle!r}",))
-    simulation, rows = cs.build(scene), []
-    particles = simulation.flow.soil.x[: simulation.flow.soil.soil]
-    while simulation.time < scene.time.end:
-        rows.append((simulation.time, float(particles[:, 0].mean())))
-        simulation.advance(50)
-    time, centre = np.array(rows).T
-    return Fall(time, centre, surface(particles, np.full(len(particles), 0.5 * scene.numerics.spacing)))
-
-
-def surface(position: Floats, radius: Floats) -> Floats:
-    """Height (m) of the highest body in each of BINS, (b,); 0 where there is none."""
-    top = np.zeros(len(BINS))
-    np.maximum.at(top, np.clip(np.digitize(position[:, 0], BINS) - 1, 0, len(BINS) - 1), position[:, 1] + radius)
-    return top
-
-
-def measure(beds: int, columns: int) -> tuple[dict[str, float], Figure]:
-    """Numbers of expected.toml, and the picture."""
+def known(name: str) -> tuple[float, float]:
+    """A number of material.toml and half of its interval, of its packings alone: grains and soil have lattice and
+    lambda in common."""
     soil = ground().soil
     assert soil
-    origin = soil.origin
-    assert origin
-    assert origin.intrinsic_permeability
-    wanted, known = origin.intrinsic_permeability, origin.measured["permeability"][1]
-    scene = ps.load(HERE / "bed.toml")
+    assert soil.origin
+    mean, error = soil.origin.measured[name]
+    return mean, half_of(error, len(soil.origin.made["seeds"]))
+
+
+def columns_fall(count: int, rows: Sequence[int], end: float) -> Columns:
+    """``count`` columns of grains and those of soil, until ``end`` (s)."""
+    stop = f"time.end={end!r}"
+    angle, error = known("critical_friction_angle")
+
+    def soil(row: int, *settings: str) -> Fall:
+        """A column of ``row`` particles over its depth of 3 cm."""
+        return soil_falls((f"numerics.spacing={0.03 / row!r}", stop, *settings))
+
+    return Columns(
+        rows, [grains_fall(seed, (stop,)) for seed in range(1, count + 1)],
+        [soil(row) for row in rows], [soil(row, LITTLE) for row in rows],
+        [soil(min(MIDDLE, rows[-1]), f"soil.friction_angle={it!r}") for it in (angle - error, angle + error)],
+    )  # fmt: skip
+
+
+def flows(beds: Sequence[Bed]) -> list[Compared]:
+    """Flow through beds of grains and through soil, over k i of the measured k, and of that at the beds' porosity."""
+    scene, soil = ps.load(HERE / "bed.toml"), ground().soil
     assert scene.fluid
     assert scene.fluid.viscosity
-    k = wanted * scene.fluid.density * GRAVITY / (scene.fluid.density * scene.fluid.viscosity)
-    through = np.array([bed(seed) for seed in range(1, beds + 1)]) / wanted
-    across = darcy(soil.porosity, k, 0.2)
+    assert soil
+    wanted, error = known("permeability")
+    across = np.array(
+        [darcy(soil.porosity, wanted * GRAVITY / scene.fluid.viscosity, GRADIENT, it) for it in FLOW_ROWS]
+    )
+    through = np.array([it.permeability for it in beds])
+    n, k = specimens()
+    there, off = power(n, k, np.array([it.porosity for it in beds]))
+    plain = Compared(FLOW, "", through / k.mean(), FLOW_ROWS, across, error / wanted)
+    return [plain, replace(plain, name=AT_POROSITY, grains=through / there, given=off)]
+
+
+def specimens() -> tuple[Floats, Floats]:
+    """Porosity, and K (m²) at half the cells, of each packing that material.toml was measured of.
+
+    What half the cells change is three times the error of the lattice, a method of second order; K falls with more
+    cells, as cases/permeameter has it.
+    """
+    measured = tomllib.loads((HERE / "material.toml").read_text(encoding="utf-8"))["measured"]
+    n, k, off = (np.array(measured[it]["values"]) for it in ("porosity", "permeability", "lattice_error"))
+    return n, k * (1.0 + 3.0 * off)
+
+
+def strength() -> tuple[float, Floats]:
+    """Critical angle of an element of the soil over that of the grains, and the rows of its test."""
+    soil = ground().soil
+    assert soil
     _, rows = lab.biaxial(material_of(soil), soil.reference, 0.05, 2000)
     strong = (rows[-1, 2] - rows[-1, 3]) / (rows[-1, 2] + rows[-1, 3])
-    angle, error = origin.measured["critical_friction_angle"]
-    fell = [grains_fall(seed) for seed in range(1, columns + 1)]
-    flowed = [soil_falls(it) for it in (angle - error, angle, angle + error)]
-    numbers = {
-        "flow through grains over Darcy's": float(through.mean()),
-        "flow through soil over Darcy's": across,
-        "critical angle of an element over that of grains": math.asin(strong) / angle,
-        "centre of fallen grains": float(np.mean([it.centre[-1] for it in fell])),
-        "centre of fallen soil": float(flowed[1].centre[-1]),
-        "centre of soil over that of grains at 0.15 s": float(
-            np.interp(0.15, flowed[1].time, flowed[1].centre)
-            / np.mean([np.interp(0.15, it.time, it.centre) for it in fell])
-        ),
-        "height of soil over that of grains at the wall": flowed[1].top[0] / float(np.mean([it.top[0] for it in fell])),
-    }
-    return numbers, draw(through, across, known / wanted, rows, (angle, error), fell, flowed)
+    return math.asin(strong) / known("critical_friction_angle")[0], rows
 
 
-def draw(
-    through: Floats, across: float, known: float, rows: Floats, strength: tuple[float, float], fell: list[Fall],
-    flowed: list[Fall],
-) -> Figure:  # fmt: skip
-    """Flow, strength, the way of both columns and what is left of them; bars and bands are standard errors."""
-    figure, (flow, element, way, end) = stage(4, 13.0, 3.3)
-    flow.axhspan(1.0 - known, 1.0 + known, color="#bbbbbb", lw=0, label="measured k ± its error")
-    flow.plot(np.zeros(len(through)), through, ".", color=GRAINS)
-    flow.errorbar(0.0, through.mean(), yerr=error_of(through), fmt="o", color=GRAINS, capsize=4, label="beds of grains")
-    flow.plot(1.0, across, "s", color=SOIL, label="continuum")
-    flow.set(xlim=(-0.7, 1.7), ylim=(0.85, 1.15), xticks=[], ylabel="q / (k i)", title="flow")
-    mean, error = np.degrees(strength)
-    element.axhspan(mean - error, mean + error, color=GRAINS, alpha=0.4, lw=0, label="grains, critical ± error")
+def numbers_of(flow: Sequence[Compared], columns: Columns, angle: float) -> dict[str, float | None]:
+    """The rows of expected.toml; None where no bed was asked for."""
+    front, centre, height, time = columns.compared()
+    less = columns.compared(less=True)[0]
+    made: dict[str, float | None] = {
+        "flow through grains over Darcy's": None, "flow through grains over Darcy's at their porosity": None,
+        "flow through soil over Darcy's": None,
+    }  # fmt: skip
+    if flow:
+        means = [float(it.grains.mean()) for it in flow]
+        made = dict(zip(made, [*means, float(flow[0].soil[-1])], strict=True))
+    masses = [float(np.mean([it.mass.sum() for it in fell])) for fell in (columns.grains, columns.soil)]
+    return made | {
+        "mass of the column of soil over that of grains": masses[1] / masses[0],
+        "critical angle of an element over that of grains": angle,
+        "front of fallen grains": float(front.grains.mean()), "front of fallen soil": float(front.soil[-1]),
+        "front of soil with little damping over that of grains": float(less.soil[-1] / less.grains.mean()),
+        "centre of fallen grains": float(centre.grains.mean()), "centre of fallen soil": float(centre.soil[-1]),
+        "height of soil over that of grains at the wall": float(height.soil[-1] / height.grains.mean()),
+        "time of soil over that of grains": float(time.soil[-1] / time.grains.mean()),
+    }  # fmt: skip
+
+
+def table(flow: Sequence[Compared], columns: Columns) -> list[str]:
+    """What both scales have, and whether they agree, as lines of a table in Markdown."""
+    less = [replace(it, name=f"{it.name}, a quarter of the damping") for it in columns.compared(less=True)]
+    rows = [it.cells() for it in [*flow, *columns.compared(), *less]]
+    return ["| " + " | ".join(it) + " |" for it in [HEAD, ["---"] * len(HEAD), *rows]]
+
+
+def draw(flow: Sequence[Compared], columns: Columns, rows: Floats) -> Figure:
+    """Flow, strength, quantities of the columns over the spacing, and their way; bars are intervals at 95 %."""
+    figure = Figure(figsize=(12.0, 6.0), layout="constrained")
+    panels = list(figure.subplots(2, 4).flat)
+    panels.pop().axis("off")
+    for at, it in enumerate(flow):
+        scale(panels[0], it, at, SOIL, "continuum" if not at else None)
+    panels[0].set(xticks=[0, 1], xlim=(-0.6, 1.8), title="q / (k i)")
+    panels[0].set_xticklabels(["measured k", "k at the\nbed's porosity"], fontsize=7)
+    mean, error = np.degrees(known("critical_friction_angle"))
+    panels[1].axhspan(mean - error, mean + error, color=GRAINS, alpha=0.4, lw=0, label="grains, critical, 95 %")
     sine = (rows[:, 2] - rows[:, 3]) / (rows[:, 2] + rows[:, 3])
-    element.plot(100.0 * rows[:, 0], np.degrees(np.arcsin(sine)), color=SOIL, label="element of the continuum")
-    element.set(xlabel="axial strain, %", ylabel="mobilised friction angle, °", ylim=(0.0, 20.0), title="strength")
-    for it in fell:
-        way.plot(it.time, 100.0 * it.centre, color=GRAINS, lw=0.8, label="grains" if it is fell[0] else None)
-        end.step(100.0 * BINS, 100.0 * it.top, where="post", color=GRAINS, lw=0.8)
-    for it in flowed:
-        way.plot(it.time, 100.0 * it.centre, color=SOIL, lw=0.8, label="continuum" if it is flowed[0] else None)
-        end.step(100.0 * BINS, 100.0 * it.top, where="post", color=SOIL, lw=0.8)
-    way.set(xlabel="time, s", ylabel="centre of the mass, cm", title="a column falls")
-    end.set(xlabel="x, cm", ylabel="surface at the end, cm", title="what is left")
-    panels: list[Axes] = [flow, element, way]
+    panels[1].plot(100.0 * rows[:, 0], np.degrees(np.arcsin(sine)), color=SOIL, label="element of the continuum")
+    panels[1].set(xlabel="axial strain, %", ylim=(0.0, 20.0), title="mobilised angle, °")
+    for panel, usual, less in zip(panels[2:6], columns.compared(), columns.compared(less=True), strict=True):
+        own = 100.0 if usual.unit == "m" else 1.0
+        mean, error = own * float(usual.grains.mean()), own * half(usual.grains)
+        panel.axhspan(mean - error, mean + error, color=GRAINS, alpha=0.3, lw=0, label="grains, mean, 95 %")
+        panel.plot(np.zeros(len(usual.grains)), own * usual.grains, ".", color=GRAINS, ms=4, label="one packing")
+        spacing = 30.0 / np.array(usual.rows)
+        panel.errorbar(spacing, own * usual.soil, own * usual.given, fmt="s-", color=SOIL, ms=4, capsize=3,
+                       label="continuum")  # fmt: skip
+        panel.plot(spacing, own * less.soil, "d--", color=LESS, ms=4, label="damping a quarter")
+        panel.set(xlim=(-0.3, None), xlabel="spacing, mm", title=f"{usual.name.split(',')[0].split(' until')[0]}")
+        panel.set_ylabel("cm" if usual.unit == "m" else usual.unit)
+    for fell, colour, label in ((columns.grains, GRAINS, "grains"), (columns.soil, SOIL, "continuum"),
+                                (columns.less, LESS, "damping a quarter")):  # fmt: skip
+        for it in fell:
+            panels[6].plot(it.times, 100.0 * it.centre, color=colour, lw=0.7, label=label if it is fell[0] else None)
+    panels[6].set(xlabel="time, s", title="centre of mass, cm")
     for panel in panels:
-        panel.legend(fontsize=7, frameon=False, loc="lower right" if panel is not flow else "upper right")
+        panel.title.set_fontsize(9)
+        panel.tick_params(labelsize=7)
+        if panel in panels[1:3] or panel is panels[6] or (flow and panel is panels[0]):
+            panel.legend(fontsize=6, frameon=False)
     return figure
 
 
-def error_of(values: Floats) -> float:
-    """Standard error of the mean of ``values`` (n,); 0 of a single one, which says nothing of it."""
-    return float(np.std(values, ddof=1) / math.sqrt(len(values))) if len(values) > 1 else 0.0
+def scale(panel: Axes, it: Compared, at: float, colour: str, label: str | None) -> None:
+    """Packings, their mean with its interval, and the soil, at ``at`` of a panel."""
+    panel.plot(np.full(len(it.grains), at), it.grains, ".", color=GRAINS, ms=4)
+    panel.errorbar(at + 0.12, float(it.grains.mean()), half(it.grains), fmt="o", color=GRAINS, capsize=4,
+                   label="beds of grains" if label else None)  # fmt: skip
+    panel.errorbar(at + 0.3, float(it.soil[-1]), it.given, fmt="s", color=colour, capsize=4, label=label)
+
+
+def measure(
+    beds: int, columns: int, rows: Sequence[int], end: float, flooded: float = 0.073
+) -> tuple[dict[str, float | None], Figure, list[str]]:
+    """Numbers of expected.toml, the picture, and the table.  rows : of soil particles over the depth of a column;
+    end : of its fall, s;  flooded : until when water is pressed through beds, s: two periods of their rebound."""
+    flow = flows([bed(seed, flooded) for seed in range(1, beds + 1)]) if beds else []
+    fell = columns_fall(columns, rows, end)
+    angle, test = strength()
+    return numbers_of(flow, fell, angle), draw(flow, fell, test), table(flow, fell)
 
 
 if __name__ == "__main__":
     asked = options(
-        __doc__ or "", HERE, beds=(int, 3, "beds that water is pressed through"),
-        columns=(int, 3, "columns of grains that fall"),
+        __doc__ or "", HERE, beds=(int, 8, "beds that water is pressed through, none if 0"),
+        columns=(int, 8, "columns of grains that fall"), end=(float, 0.6, "s that columns fall"),
+        rows=(str, "6,9,12", "rows of soil over the depth of a column, few to many"),
     )  # fmt: skip
-    raise SystemExit(conclude(HERE, *measure(asked.beds, asked.columns), asked.out))
+    numbers, figure, lines = measure(asked.beds, asked.columns, [int(it) for it in asked.rows.split(",")], asked.end)
+    print("\n".join(lines))
+    asked.out.mkdir(parents=True, exist_ok=True)
+    (asked.out / "table.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    raise SystemExit(conclude(HERE, numbers, figure, asked.out))

@@ -1,4 +1,4 @@
-"""A saturated levee under a sudden rise of the river: its toe goes first, then its slope, then water over its crest."""
+"""A saturated levee under a sudden rise of the river: its slope goes, then its crest, then water runs over it."""
 
 from collections.abc import Iterator
 from dataclasses import replace

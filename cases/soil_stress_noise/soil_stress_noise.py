@@ -27,6 +27,8 @@ METHODS: dict[str, dict[str, float | bool]] = {
     "and parting": {},
 }  # fmt: skip
 """More of `SoilLaw`."""
+GIVEN = {"damping": 0.2, "diffusion": 100.0}
+"""α and χ of all methods that say nothing else, so that one thing changes at a time."""
 MATERIAL = Material(1e6, 2040.0, sin_friction=float(np.sin(np.radians(21.9))))
 WIDTH, HEIGHT = 0.2, 0.1  # m
 PARTNERS = 12  # nearest particles that a plane of stress is laid through
@@ -36,7 +38,7 @@ def column(name: str, spacing: float, tank: tuple[float, float], width: float) -
     """A column of soil ``width`` (m) wide in the left corner of a ``tank`` (m)."""
     x = square_lattice((0.0, 0.0), (width, HEIGHT), spacing)
     stress = geostatic(HEIGHT - x[:, 1], MATERIAL)
-    return setups.in_tank(x, stress, tank, spacing, MATERIAL, **METHODS[name])  # type: ignore[arg-type]
+    return setups.in_tank(x, stress, tank, spacing, MATERIAL, **(GIVEN | METHODS[name]))  # type: ignore[arg-type]
 
 
 def noise(flow: SoilFlow) -> float:

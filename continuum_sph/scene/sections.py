@@ -132,6 +132,7 @@ class Scene(SceneBase):
                     Fault("numerics.spacing", spacing, f"leaves {key} fewer than 4 particles across", "m",
                           f"<= {finest:g}")
                 )  # fmt: skip
+        faults += self._overlapping() + self._unseen()
         columns = self.water.column
         alone = len(columns) == 1 and columns[0].left == columns[0].bottom == 0.0
         if self.water.pressure == "released" and columns and not alone:
@@ -147,6 +148,29 @@ class Scene(SceneBase):
         if faults:
             raise Refused(*faults)
         return self
+
+    def _overlapping(self) -> list[Fault]:
+        """Columns of water that share room: every place would be filled twice."""
+        found, least = [], 0.5 * self.numerics.spacing
+        for k, one in enumerate(self.water.column):
+            for j, other in enumerate(self.water.column[:k]):
+                wide = min(one.left + one.width, other.left + other.width) - max(one.left, other.left)
+                high = min(one.bottom + one.height, other.bottom + other.height) - max(one.bottom, other.bottom)
+                if wide > least and high > least:
+                    problem = f"overlaps water.column[{j}] by {wide:g} x {high:g} m"
+                    found.append(Fault(f"water.column[{k}]", None, problem, repair="move or narrow one of them"))
+        return found
+
+    def _unseen(self) -> list[Fault]:
+        """Probes and levels that lie outside of the tank."""
+        found, (width, height) = [], (self.tank.width, self.tank.height)
+        for k, it in enumerate(self.probe):
+            if it.x > width or it.y > height:
+                found.append(Fault(f"probe[{k}]", (it.x, it.y), "lies outside of the tank", "m"))
+        for k, level in enumerate(self.level):
+            if level.x > width:
+                found.append(Fault(f"level[{k}].x", level.x, "lies outside of the tank", "m", f"<= {width:g}"))
+        return found
 
     def _wet_soil(self, soil: SoilSection) -> list[Fault]:
         """Keys of the soil that need water, or exclude each other."""

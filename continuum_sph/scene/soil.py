@@ -29,6 +29,20 @@ class Body(Section):
             highest = np.where(over, np.maximum(highest, y), highest)
         return highest
 
+    def crosses(self) -> bool:
+        """Whether two sides of the outline cross each other; sides that only touch do not."""
+        corners = np.array(self.outline)
+        sides = list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
+
+        def turn(a: Floats, b: Floats, c: Floats) -> float:
+            return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+
+        return any(
+            turn(a, b, c) * turn(a, b, d) < 0.0 and turn(c, d, a) * turn(c, d, b) < 0.0
+            for k, (a, b) in enumerate(sides)
+            for c, d in sides[:k]
+        )
+
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which of ``points`` (n, 2) m lie inside: an odd number of sides to their right."""
         x, y = points[:, 0], points[:, 1]
@@ -49,19 +63,21 @@ class SoilNumerics(Section):
     """Numerics that damp the noise of soil particles and keep them evenly spaced; see `continuum_sph.soil.momentum`.
 
     Maeda & Sakai 2004: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
-    damping_viscosity : damping goes as alpha, the speed of sound c and h; prescribed as their product it is the same
-    whatever the stiffness and the spacing are, and with it how far a tongue of soil slides.
+    damping, damping_viscosity, stress_diffusion : left out, they follow from gravity and the ground's height and
+    stiffness, see `continuum_sph.soil.steadying`; "approach" has 0.2.
     """
 
     gradient: Literal["corrected", "plain"] = pydantic.Field(
         default="corrected", description="gradients of the velocity"
     )
-    damping: float = quantity("", 0.2, ge=0, le=4, help="alpha of the damping")
+    damping: float | None = quantity("", None, ge=0, le=4, help="alpha of the damping")
     damping_of: Literal["zig-zags", "approach"] = pydantic.Field(
         default="zig-zags", description="what the damping acts on"
     )
     damping_viscosity: float | None = quantity("m^2/s", None, ge=0, le=1e6, help="alpha c h, in place of damping")
-    stress_diffusion: float = quantity("", 100.0, ge=0, le=1000, help="diffusion of stress and volume per shear strain")
+    stress_diffusion: float | None = quantity(
+        "", None, ge=0, le=1000, help="diffusion of stress and volume per shear strain"
+    )
     restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="the same by sound: soil creeps")
     parting: float = quantity("", 4.0, ge=0, le=20, help="how fast particles too near part, per shear strain")
     repulsion: float = quantity("", 10.0, ge=0, le=100, help="what keeps soil that bears tension from clumping")
@@ -136,6 +152,9 @@ class SoilSection(Section):
         for key, body in ((f"soil.{kind}[{k}].outline", it) for kind, of in outlines for k, it in enumerate(of)):
             if len(body.outline) < 3:
                 found.append(Fault(key, len(body.outline), "corners hold nothing", "", ">= 3"))
+            elif body.crosses():
+                problem = "crosses itself"
+                found.append(Fault(key, None, problem, repair="give the corners in their order around the body"))
             for x, y in body.outline:
                 if not (-slack <= x <= width + slack and -slack <= y <= height + slack):
                     found.append(Fault(key, (x, y), "lies outside of the tank", "m"))

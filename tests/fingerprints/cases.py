@@ -82,6 +82,9 @@ NO_SUBJECT = {
     "column_collapse/lambda.py": "reads a sweep of the scene beside it",
     "column_collapse/trade.toml": "of a study, not a scene",
     "loose_and_dense_collapse/compare.py": "reads a sweep of the scene beside it",
+    "micro_to_macro/compared.py": "imported by the script beside it",
+    "micro_to_macro/falls.py": "imported by the script beside it",
+    "micro_to_macro/flows.py": "imported by the script beside it",
     "micro_to_macro/material.toml": "read by ground.toml",
     "own_law/laws.py": "named by the scene beside it",
 }

@@ -70,8 +70,8 @@ def test_a_slip_of_the_exponent_is_out_of_range(key, value, allowed):
     assert f"(allowed: {allowed})" in line
 
 
-def test_a_run_of_more_than_a_week_is_warned_of(monkeypatch):
-    monkeypatch.setattr(cost, "_slowness", dict)
+def test_a_run_of_more_than_a_week_is_warned_of(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))  # no run of this machine is known
     # A step takes at least COUPLED_CALLS = 45 us: a week is no more than 7 * 86400/45e-6 = 1.3e10 steps of 4e-5 s.
     long = column(time__end=6e5, output__snapshot_interval=6e3, output__series_interval=6e2)
     assert [it for it in report(long).warnings if "more than a week" in it]

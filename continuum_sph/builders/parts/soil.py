@@ -23,6 +23,7 @@ from continuum_sph.scene.soil import SoilSection
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw, porosity
 from continuum_sph.soil.parameters import RULES
+from continuum_sph.soil.steadying import WEIGHTLESS, steadied
 from continuum_sph.soil.stress import XX, XY, YY, ZZ
 from continuum_sph.soil.walls import HOLDING, SLIPPING
 from continuum_sph.water.image_walls import facing
@@ -282,12 +283,15 @@ def material_of(section: SoilSection) -> Material:
     )
 
 
-def damping_of(section: SoilSection, numerics: NumericsSection) -> float:
-    """α of the damping: as given, or what makes α c h the given viscosity, c sound in a column at E0."""
-    if section.numerics.damping_viscosity is None:
-        return section.numerics.damping
-    sound = math.sqrt(material_of(section).column_modulus / section.density)
-    return section.numerics.damping_viscosity / (sound * numerics.smoothing_ratio * numerics.spacing)
+def damping_of(section: SoilSection, numerics: NumericsSection, steady: float) -> float:
+    """α of the damping: as given, or what makes α c h the given viscosity, c sound in a column at E0, or ``steady``."""
+    choice = section.numerics
+    if choice.damping_viscosity is not None:
+        sound = math.sqrt(material_of(section).column_modulus / section.density)
+        return choice.damping_viscosity / (sound * numerics.smoothing_ratio * numerics.spacing)
+    if choice.damping is not None:
+        return choice.damping
+    return WEIGHTLESS[0] if choice.damping_of == "approach" else steady
 
 
 def soil_law(scene: Scene) -> SoilLaw:
@@ -297,15 +301,17 @@ def soil_law(scene: Scene) -> SoilLaw:
     # What stops the slowest swing of a column of this height, period 4 H/c, within one of its periods.
     softest = material.column_modulus * material.stiffness_at(material.least) / material.stiffness
     slowest = 0.5 * math.pi * math.sqrt(softest / material.density) / section.height
+    smoothing = Smoothing(numerics.kernel, numerics.smoothing_ratio * numerics.spacing)
+    damping, diffusion = steadied(material, scene.gravity, section.height, smoothing.length)
     return SoilLaw(
-        Smoothing(numerics.kernel, numerics.smoothing_ratio * numerics.spacing),
+        smoothing,
         numerics.spacing,
         (material,),
         (0.0, -scene.gravity),
-        damping=damping_of(section, numerics),
+        damping=damping_of(section, numerics, damping),
         printed_damping=choice.damping_of == "approach",
         corrected=choice.gradient == "corrected",
-        diffusion=choice.stress_diffusion,
+        diffusion=diffusion if choice.stress_diffusion is None else choice.stress_diffusion,
         sound_diffusion=choice.restless_diffusion,
         spacing_recovery=choice.parting,
         repulsion=choice.repulsion,

@@ -1,7 +1,6 @@
 """A saturated levee under a sudden rise of the river: when its toe, its slope and its crest have moved.  SI."""
 
 import functools
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,17 +18,6 @@ WATER = 1000.0  # kg/m³
 STIFF = 10.0  # K_w/(n M) of the water
 GRAINS = 2650.0  # kg/m³
 GRAVITY = 9.8  # m/s², of Maeda & Sakai 2004
-DIFFUSION_SHARE = 4.0
-"""χ γ'H/E of the diffusion of stress.  Of particles that slide past each other the strain is uneven, and stress by E
-times that; diffusion takes it away within a shear strain that goes as 1/χ, so what is left goes as E/χ.  It bears load,
-as soil keeps what is over its stress and cuts off what would pull: with χ alone given, a levee would stand the longer
-the stiffer it is."""
-MOST = 1000.0  # χ at most
-BRAKED, SOFT = 1.0, 0.5e6
-"""α of the damping at E = SOFT (Pa); of other E such that α c h stays.  What damping leaves of uneven motion opens the
-soil a little, water does not follow as fast, and its suction holds the soil: from 10 to 24 rows the time of the crest
-changes by 0.13 s with α = 0.2, by 0.04 s with 1."""
-FIRMEST = 4.0  # α at most, for steps as long as sound allows
 PARTS = {"toe": (0.0, 0.25), "middle": (0.4, 0.65), "crest": (0.8, 1.01)}
 """Heights of the land side's surface over that of the crest, from and to."""
 SHALLOW = 0.15  # depth below the surface of what is watched, over the height of the crest
@@ -44,7 +32,7 @@ class Levee:
     rows : particles over its height;  height, crest : m;  river, land : run of its slopes over the height;  pool,
     plain : breadth of river and land beside it, m;  stiffness : E, Pa;  ratio : K_w/(n M) of the water;  permeability
     m/s;  friction : degrees;  cohesion : Pa;  low, high : levels of the river over the height;  viscosity : artificial,
-    α of the water;  diffusion_share : see DIFFUSION_SHARE;  braked : α of the soil, see BRAKED;  end : s.
+    α of the water;  diffusion : χ of the soil, left out: as of any ground (`soil.steadying`);  end : s.
     """
 
     rows: int = 12
@@ -62,8 +50,7 @@ class Levee:
     low: float = 0.6
     high: float = 0.95
     viscosity: float = 0.01
-    diffusion_share: float = DIFFUSION_SHARE
-    braked: float = BRAKED
+    diffusion: float | None = None
     settle: float = 0.5
     rising: float = 0.5
     end: float = 5.5
@@ -91,26 +78,12 @@ class Levee:
         """M of a column, Pa, with ν = 0.3."""
         return self.stiffness * 0.7 / (1.3 * 0.4)
 
-    @property
-    def weight(self) -> float:
-        """γ'H of soil under water, Pa."""
-        return (1.0 - self.porosity) * (GRAINS - WATER) * GRAVITY * self.height
-
-    @property
-    def diffusion(self) -> float:
-        """χ of the diffusion of stress."""
-        return min(MOST, self.diffusion_share * self.stiffness / self.weight)
-
-    @property
-    def damping(self) -> float:
-        """Damping coefficient α of the soil."""
-        return min(FIRMEST, self.braked * math.sqrt(SOFT / self.stiffness))
-
     def table(self) -> dict[str, Any]:
         """The scene of it, as a file would have it."""
         foot, top, edge, toe = self.corners
         width = toe + self.whole(self.plain)
         low, high = self.low * self.height, self.high * self.height
+        given = {} if self.diffusion is None else {"stress_diffusion": self.diffusion}
         covered = self.whole(foot + (top - foot) * self.low)
         return {
             "title": "A saturated levee under a sudden rise of the river",
@@ -124,7 +97,7 @@ class Levee:
                 "stiffness": self.stiffness, "permeability": self.permeability, "saturated": True,
                 "density": (1.0 - self.porosity) * GRAINS, "porosity": self.porosity,
                 "friction_angle": f"{self.friction} degree", "cohesion": self.cohesion,
-                "numerics": {"settle": self.settle, "stress_diffusion": self.diffusion, "damping": self.damping},
+                "numerics": {"settle": self.settle} | given,
                 "body": [{"outline": [[foot, 0], [toe, 0], [edge, self.height], [top, self.height]]}],
             },
             "reservoir": [

@@ -8,6 +8,7 @@ import numpy as np
 
 from continuum_sph.builders.parts.soil import placed
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
+from continuum_sph.soil.steadying import steadied
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
@@ -37,9 +38,12 @@ def in_tank(
     """Soil at ``x`` (n, 2) m with ``stress`` (n, 4) Pa in a tank (width, height), m, lower left corner at the origin.
 
     tilt : rad, of the floor: gravity leans to the right;  floor, sides : "hold" the soil or let it "slip", sides
-    "none": endless soil, periodic across;  law : more of `SoilLaw`.  Wendland C2 with h = 1.3 spacings.
+    "none": endless soil, periodic across;  law : more of `SoilLaw`, with damping and diffusion as in a scene where not
+    given.  Wendland C2 with h = 1.3 spacings.
     """
     lean = (gravity * math.sin(tilt), -gravity * math.cos(tilt))
+    damping, diffusion = steadied(material, gravity, float(x[:, 1].max()) + 0.5 * spacing, RATIO * spacing)
+    law = {"damping": damping, "diffusion": diffusion} | law
     given = SoilLaw(Smoothing("wendland", RATIO * spacing), spacing, (material,), lean, **law)
     return placed(x, stress, tank, given, floor=floor, sides=sides, skin=SKIN)
 

@@ -53,7 +53,7 @@ class Held:
 @dataclass(frozen=True)
 class Endurance:
     """What lasts.  start : makes it;  settles : marks before the first that counts;  share : of the requested steps
-    that it does, where they are dear."""
+    that it does, where they are dear;  before : steps before all marks, in which the start comes to rest."""
 
     name: str
     title: str
@@ -61,6 +61,7 @@ class Endurance:
     held: tuple[Held, ...]
     settles: int = 1
     share: float = 1.0
+    before: int = 0
 
     def steps(self, requested: int) -> int:
         """Number of steps out of ``requested`` ones that this row does."""
@@ -91,8 +92,9 @@ def endure(it: Endurance, steps: int, say: Say = lambda text: None) -> list[Line
     """Run it for ``steps`` steps, or its share: lines of each quantity, of what was found wrong, and of memory."""
     steps = it.steps(steps)
     run, at, begun = it.start(), [0], time.perf_counter()
+    wrong = _advance(run, it.before, say)
     seen: dict[str, list[float]] = {name: [float(value)] for name, value in run.read().items()}
-    memory, found = [peak_bytes() / 2**20], [0.0]
+    memory, found = [peak_bytes() / 2**20], [float(wrong)]
     for mark in range(1, MARKS + 1):
         to = steps * mark // MARKS
         found.append(found[-1] + _advance(run, to - at[-1], say))

@@ -129,7 +129,7 @@ class Campaign:
             done = self.scheduler.run([self.task(point) for point in left.values()], jobs, rest)
             for number, each in enumerate(done, 1):
                 ended = self.ended(left[each.task.name], each)
-                rest.ended(ended.point.name, ended.seconds)
+                rest.ended(ended.point.name, each.seconds or ended.seconds)
                 say(f"{ended.point.name}: {ended.outcome}, {ended.seconds:.3g} s "
                     f"({number} of {len(left)}, {rest.words()})")  # fmt: skip
                 yield ended

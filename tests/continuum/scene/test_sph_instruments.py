@@ -131,3 +131,28 @@ def test_a_probe_with_sides_takes_the_mean_of_the_water_in_it():
 def test_a_probe_with_one_side_is_refused():
     with pytest.raises(InputError, match=r"height: a rectangle needs both"):
         validate(ProbeSection, {"x": 0.1, "y": 0.1, "width": 0.2})
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"probe": [{"x": 2.5, "y": 0.1}]}, r"^probe\[0\] = \(2\.5, 0\.1\) m: lies outside of the tank"),
+        ({"level": [{"x": 2.5}]}, r"^level\[0\]\.x = 2\.5 m: lies outside of the tank"),
+    ],
+)
+def test_instruments_outside_of_the_tank_are_refused(given, said):
+    with pytest.raises(InputError, match=said):
+        validate(Scene, {**SCENE, **given})
+
+
+def test_columns_of_water_that_share_room_are_refused():
+    # Every place of what they share would get two particles, in one place: the run stopped, and blamed courant.
+    column = SCENE["water"]["column"][0]
+    half = {**column, "width": 0.5 * column["width"]}
+    beside = {**half, "left": half["width"]}
+    water = {**SCENE["water"], "column": [half, beside]}
+    assert len(Simulation(validate(Scene, {**SCENE, "water": water})).positions) == len(
+        Simulation(validate(Scene, SCENE)).positions
+    )
+    with pytest.raises(InputError, match=r"^water\.column\[1\]: overlaps water\.column\[0\] by "):
+        validate(Scene, {**SCENE, "water": {**water, "column": [column, beside]}})

@@ -341,4 +341,3 @@ def test_damping_given_as_a_viscosity_is_the_same_at_any_stiffness_and_spacing()
         law = soil_law(scene(stiffness=stiffness, numerics=given))
         sound = math.sqrt(law.materials[0].column_modulus / law.materials[0].density)
         assert law.damping * sound * law.smoothing.length == pytest.approx(0.05, rel=1e-14)
-    assert soil_law(scene()).damping == 0.2

@@ -35,7 +35,11 @@ class Local:
                 process = self.process(task, place)
                 alive.append(process)
                 try:
-                    return Done(task, INTERRUPTED, "") if stopped else Done(task, *process.run())
+                    if stopped:
+                        return Done(task, INTERRUPTED, "")
+                    began = progress.now()
+                    code, said = process.run()
+                    return Done(task, code, said, progress.now() - began)
                 except BaseException:
                     stopped = True
                     raise

@@ -55,11 +55,13 @@ class Task:
 
 
 class Done(NamedTuple):
-    """A task that has ended: exit code of its process, and what it said on stderr."""
+    """A task that has ended: exit code of its process, what it said on stderr, and its wall-clock seconds from the
+    start of the process, 0 where they are not known."""
 
     task: Task
     code: int
     said: str
+    seconds: float = 0.0
 
 
 class Process:

@@ -1,10 +1,13 @@
 """The time left of many runs, against runs whose whole course is known."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 
+from porescale.common.studies.schedulers.local import Local
 from porescale.common.studies.schedulers.progress import Progress, share_done
+from porescale.common.studies.schedulers.task import Done, Task
 
 
 @pytest.fixture
@@ -47,6 +50,21 @@ def test_runs_at_a_steady_pace_take_what_is_left_of_them(run, tmp_path):
     assert left.seconds() == pytest.approx(100)
     left.ended("d", 100.0)
     assert left.seconds() == 0.0
+
+
+def test_a_run_here_counts_from_the_start_of_its_process(tmp_path):
+    now = [0.0]
+
+    def run():
+        now[0] += 7.0
+        return 0, ""
+
+    rest = Progress(print, {"a": tmp_path / "a", "b": tmp_path / "b"}, now=lambda: now[0])
+    task = Task("a", "toy", (), tmp_path / "a")
+    (done,) = Local(lambda *_: SimpleNamespace(run=run, stop=lambda: None)).run([task], 1, rest)
+    rest.ended("a", done.seconds)
+    assert rest.seconds() == 7.0  # as much for the other
+    assert Done(task, 0, "").seconds == 0.0  # the twin: of a process elsewhere it is not known
 
 
 def test_a_pace_is_seen_not_read_from_clocks(run):
