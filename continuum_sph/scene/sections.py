@@ -167,9 +167,9 @@ class Scene(SceneBase):
         for k, it in enumerate(self.probe):
             if it.x > width or it.y > height:
                 found.append(Fault(f"probe[{k}]", (it.x, it.y), "lies outside of the tank", "m"))
-        for k, it in enumerate(self.level):
-            if it.x > width:
-                found.append(Fault(f"level[{k}].x", it.x, "lies outside of the tank", "m", f"<= {width:g}"))
+        for k, level in enumerate(self.level):
+            if level.x > width:
+                found.append(Fault(f"level[{k}].x", level.x, "lies outside of the tank", "m", f"<= {width:g}"))
         return found
 
     def _wet_soil(self, soil: SoilSection) -> list[Fault]:

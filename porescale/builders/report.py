@@ -194,6 +194,7 @@ def _contact(derived: Derived, out: Report) -> None:
     out.row("damping ratio of a pair", law.ratio_of_damping(mass, radius))
     out.row("contact time of a pair", lasts, "s", remark)
     out.row("restitution of a pair", law.restitution(mass, radius))
+    out.row("restitution at a wall", wall.restitution(2 * mass, 2 * radius), "", "of a mean grain")
     out.row("stability limit in a packing", derived.contact_limit, "s")
     out.row("contact step", derived.contact_step, "s")
     out.row("contact steps per model step", derived.contact_steps or 1)

@@ -7,6 +7,7 @@ import pytest
 from porescale.builders.build import build
 from porescale.builders.checks.regime import column_height, fall, terminal_speed
 from porescale.builders.derive import derive
+from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from tests.reference.scenes import column, dry, grain, water
 
@@ -100,3 +101,16 @@ def test_a_relaxation_time_at_which_no_flow_begins_right_is_warned_of():
     (line,) = warned(water(**channel, fluid__step=1e-2), "relaxation time")
     step = float(line.partition("a step of ")[2].partition(" s")[0])
     assert not warned(water(**channel, fluid__step=step), "relaxation time")
+
+
+def test_check_says_how_high_a_grain_bounces_from_a_wall():
+    # The dashpot is that of two mean grains, whose reduced mass is half of one: a grain bounces higher from a wall.
+    contact = {"stiffness": 1e6, "restitution": 0.6, "friction": 0.0, "step": 1e-7}  # a thousandth of a contact
+    one = {"density": 2500, "grain": [{**grain(0.003, 0.002), "velocity": [0.0, -0.1]}]}
+    scene = dry(grains=one, gravity=[0, 0], contact=contact)
+    rows = {row["name"]: row["value"] for group in report(scene).as_dict()["groups"].values() for row in group}
+    assert rows["restitution of a pair"] == pytest.approx(0.6, rel=1e-9)
+    simulation = build(scene)
+    simulation.run(until=0.02)
+    assert simulation.velocities[0, 1] / 0.1 == pytest.approx(rows["restitution at a wall"], abs=3e-3)
+    assert rows["restitution at a wall"] > 0.65
