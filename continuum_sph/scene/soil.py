@@ -35,7 +35,7 @@ class Body(Section):
         sides = list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
 
         def turn(a: Floats, b: Floats, c: Floats) -> float:
-            """Twice the area of a triangle, > 0 where its corners turn left."""
+            """Twice the area of the triangle, above zero where it turns left."""
             return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
         return any(

@@ -86,7 +86,8 @@ def test_kernels_are_the_same_uncompiled(monkeypatch):
         soften, smeared = (rim.soften, rim.filter_patches)
         if plain:
             soften, smeared = soften.py_func, smeared.py_func
-        soften(np.array([0.0, 3e-3]), np.array([5.0, 7.5]), 0.28, 2e-3, theta, theta2, covering)
+        stands = np.array([False, False])
+        soften(np.array([0.0, 3e-3]), np.array([5.0, 7.5]), 0.28, 2e-3, stands, theta, theta2, covering)
         patches = make_patches(np.array([8, 8]), np.array([8, 8]), np.dtype(float))
         patches.fraction[:] = np.random.default_rng(2).uniform(0, 1, patches.fraction.shape)
         smeared(theta, theta2, patches)
@@ -107,6 +108,39 @@ def test_fast_flow_does():
     sharp, soft = (towed(soft, 0.05)[1] for soft in (False, True))
     assert soft.soft_rim.theta.min() > 0.1
     assert np.abs(soft.force - sharp.force).max() > 1e-2 * np.abs(sharp.force).max()
+
+
+@pytest.mark.parametrize("soften", [rim.soften, rim.soften.py_func])
+def test_a_disc_that_stands_is_drawn_in_by_less_than_a_cell_and_not_filtered(soften):
+    slip, radius, shift = np.array([0.0, 1e-3, 1e-3, 1.0]), np.array([5.0, 7.5, 7.5, 10.0]), 0.28
+    theta, theta2, covering = np.zeros((3, 4))
+    soften(slip, radius, shift, 2e-3, np.array([True, True, False, True]), theta, theta2, covering)
+    assert theta[[0, 1, 3]].tolist() == theta2[[0, 1, 3]].tolist() == [0, 0, 0]
+    first, second = rim.softness.py_func(1e-3, 7.5, 2e-3)
+    assert (theta[2], theta2[2]) == pytest.approx((first, second), rel=4 * EPS)
+    assert covering[0] == 5.0 + shift / 5.0  # in slow flow that of the exact wall, to the bit
+    assert covering[1] == pytest.approx(7.5 - 0.4 * first - 0.3 * second + shift / 7.5 * (1 - first), rel=4 * EPS)
+    assert covering[2] < covering[1] - 0.5  # the twin: what moves is drawn in by more
+    assert covering[3] == pytest.approx(10 - 0.7, abs=1e-3)
+
+
+def test_cells_of_a_disc_that_stands_are_those_of_the_exact_wall():
+    fluid, other = (Fluid(40, 30, 0.505, operator="central", sides=PERIODIC) for _ in range(2))
+    wet = SaturatedCells(fluid, np.array([5.5]), soft_rim=True)
+    wet.soft_rim.stands[:] = True
+    place, rest, no_spin = np.array([(20.2, 15.3)]), np.zeros((1, 2)), np.zeros(1)
+    fluid.set_flow(0.05, 0.01)
+    for _ in range(200):
+        wet.advance(fluid, place, rest, no_spin)
+    wet.cover(place, rest, no_spin)
+    assert wet.covering_radius[0] < 5.5 - 0.3
+    sharp = SaturatedCells(other, wet.covering_radius.copy())
+    sharp.covering_radius[:] = wet.covering_radius
+    sharp.cover(place, rest, no_spin)
+    np.testing.assert_array_equal(wet.solid, sharp.solid)
+    wet.soft_rim.stands[:] = False  # the twin that must differ: filtered, and drawn in by more
+    wet.cover(place, rest, no_spin)
+    assert np.abs(wet.solid - sharp.solid).max() > 0.1
 
 
 def test_what_discs_gain_the_fluid_loses():
@@ -152,6 +186,11 @@ def test_the_reference_is_the_body_fitted_solution(reynolds):
 def test_sharp_rims_fail_the_row_of_the_fast_start(options):
     row = VALIDATIONS["coupling.fast_start"]
     assert fast_starts(((100, 0.05, 11.0),), **options).error > row.tolerance
+
+
+def test_a_sharp_rim_that_is_not_drawn_in_fails_the_row_of_what_stands():
+    row = VALIDATIONS["coupling.fast_start_of_what_stands"]
+    assert fast_starts(((500, 0.05, 11.0),), held=True, soft_rim=False).error > 4 * row.tolerance
 
 
 def test_a_cylinder_held_in_the_stream_feels_what_a_towed_one_does():

@@ -86,6 +86,12 @@ def test_sides_reach_the_lattice_in_its_units():
     assert moving.top_speed * scales.velocity == pytest.approx(0.2, rel=1e-15)
 
 
+def test_a_disc_that_never_moves_is_told_to_the_rims():
+    towed, swung = {**DISC, "x": 0.007, "spin": 1.0}, {**DISC, "y": 0.0065, "velocity_x": {"mean": 0.01}}
+    scene = channel(fluid__operator="central", disc=[DISC, towed, swung])
+    assert build(scene).coupled.saturated.soft_rim.stands.tolist() == [True, False, False]
+
+
 def test_every_law_that_a_scene_names_is_the_one_that_runs():
     scene = channel(fluid__operator="mrt", fluid__smagorinsky=0.17, fluid__solid_operator="SC1", fluid__weighting="B1")
     simulation = build(scene)

@@ -75,9 +75,13 @@ def coupled_of(
         ratio[: disc_count(grains) - len(scene.disc)] = scene.grains.hydraulic_radius_ratio
     films = scene.lubrication
     rings = [on_the_lattice(scene.ring, derived.scales)] if scene.ring else []
-    return Coupled(
+    coupled = Coupled(
         fluid, grains, derived.scales, hydraulic_ratio=ratio, contact_steps=derived.contact_steps or 1,
         acceleration=scene.gravity, **solid_options(scene.fluid),
         lubrication=films is not None, film_gap=films.gap if films else CELLS, rectangles=rectangles,
         rings=rings,
     )  # fmt: skip
+    rims = coupled.saturated.soft_rim
+    if rims and scene.disc:
+        rims.stands[-len(scene.disc) :] = [disc.fastest == 0.0 for disc in scene.disc]
+    return coupled

@@ -10,9 +10,16 @@ of the body, estimated from the slip at its rim, w = sum e (1 - e)|v - u| / sum 
     fractions   filtered by (s, 1 - 2 s, s) along x, then y, with s = theta/4, and again with s = theta2/4
     cells       k = tau - 1/2 + 0.24 theta |v - u|, and the odd rate that of SC1 in theta (solid/exact_wall.py)
 
+A disc that stands frees and covers no cells, so nothing shakes and nothing need be filtered: its cells are those of the
+exact wall, and it is only drawn in, since fast flow stops in every cell that it touches, half a cell before its rim:
+
+    radius      r_c = r - 0.4 theta - 0.3 theta2 + (A/r)(1 - theta)
+
 theta = 0 is the exact wall to the bit; the filter keeps the sum of the fractions.  The numbers were chosen by the drag
 of an impulsively towed cylinder, d = 10 and 15 cells, Re 50, 100 and 500, against a body-fitted solution; other sizes,
-directions, Reynolds numbers and viscosities were not looked at.  Derived here.
+directions, Reynolds numbers and viscosities were not looked at.  Those of a disc that stands: by the drag of a cylinder
+that fluid passes at once (d = 10 and 15, Re 50, 100, 500), with the street of vortices in sight (d = 20, Re 100), whose
+lift is 14 % too small with filters.  Derived here.
 """
 
 import math
@@ -26,6 +33,8 @@ from porescale.coupling.load import sum_rim_slip
 
 SLIP_FACTOR = 0.24
 """Factor of theta |v - u| in the slip-dependent part of k."""
+DRAWN_IN = 0.4, 0.3
+"""Cells by which a disc that stands is drawn in at theta and theta2 of 1."""
 SLIP_SHARE = 0.02
 """Share of a step's rim slip in the one that theta is made from."""
 MARGIN = 4
@@ -40,17 +49,19 @@ def softness(slip, radius, viscosity):
 
 
 @kernel
-def soften(slip, radius, radius_shift, viscosity, theta, theta2, covering_radius):
+def soften(slip, radius, radius_shift, viscosity, stands, theta, theta2, covering_radius):
     """theta, theta2 and r_c of every disc from its low-passed rim slip (n,); overwrites the last three (n,).
 
-    radius (n,): r, cells;  radius_shift: A, cells².
+    radius (n,): r, cells;  radius_shift: A, cells²;  stands (n,): discs whose theta and theta2 serve for r_c alone.
     """
     for n in range(radius.shape[0]):
         r = radius[n]
         first, second = softness(slip[n], r, viscosity)
-        theta[n] = first
-        theta2[n] = second
+        theta[n] = 0.0 if stands[n] else first
+        theta2[n] = 0.0 if stands[n] else second
         inset = math.sqrt(r) * (0.49 * first + 0.25 * second)
+        if stands[n]:
+            inset = DRAWN_IN[0] * first + DRAWN_IN[1] * second
         covering_radius[n] = max(r - inset + radius_shift / max(r, 1.0) * (1.0 - first), 0.5 * r)
 
 
@@ -114,19 +125,21 @@ def filter_patches(theta, theta2, patches):
 
 class SoftRim:
     """Soft rims of discs.  slip (n,): low-passed, lattice units, what goes on from step to step;  theta, theta2 (n,);
-    sums (n, 2): see ``follow_slip``."""
+    sums (n, 2): see ``follow_slip``;  stands (n,): set by the owner for discs that never move, which get sharp ones."""
 
     def __init__(
         self, radius: NDArray[np.floating], radius_shift: float, relaxation_time: float, theta: NDArray[np.floating]
     ) -> None:
         self.radius, self.radius_shift, self.viscosity = radius, radius_shift, (relaxation_time - 0.5) / 3
         self.theta, self.theta2 = theta, np.zeros(len(radius))
+        self.stands = np.zeros(len(radius), np.bool_)
         self.slip, self.sums = np.zeros(len(radius)), np.zeros((len(radius), 2))
 
     def soften(self, covering_radius: NDArray[np.floating]) -> None:
         """Softness of this step; overwrites covering_radius (n,), cells."""
         soften(
-            self.slip, self.radius, self.radius_shift, self.viscosity, self.theta, self.theta2, covering_radius
+            self.slip, self.radius, self.radius_shift, self.viscosity, self.stands, self.theta, self.theta2,
+            covering_radius,
         )  # fmt: skip
 
     def filter(self, patches: Patches) -> None:

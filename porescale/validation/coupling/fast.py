@@ -40,11 +40,13 @@ def started(
     soft_rim: bool = True,
     solid_operator: str = "exact-wall",
     held: bool = False,
+    stands: bool = False,
     wide: int = WIDE,
 ) -> tuple[float, float]:
     """Mean drag coefficient over 1 <= t U/D <= 3, and the noise: rms about a smooth curve over the mean.
 
-    degrees: between the direction and the lattice;  held: the cylinder stays and the fluid comes.
+    degrees: between the direction and the lattice;  held: the cylinder stays and the fluid comes;  stands: and its rim
+    is that of a disc that never moves.
     """
     across, along = round(wide * diameter), round(0.75 * wide * diameter)
     periodic = Sides("periodic", "periodic", "periodic", "periodic")
@@ -52,6 +54,8 @@ def started(
     wet = SaturatedCells(fluid, np.array([diameter / 2]), solid_operator=solid_operator, soft_rim=soft_rim)
     direction = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
     motion = speed * direction[None]
+    if wet.soft_rim:
+        wet.soft_rim.stands[:] = stands
     place = np.array([[across / 2 + 0.3, along / 2 + 0.1]]) - (0 if held else 1.5 * diameter * direction)
     (x, y), (u, v) = place[0], motion[0]
     potential_start(fluid, x, y, diameter / 2, u, v)
@@ -103,6 +107,19 @@ def fast_starts(cases: tuple[tuple[float, float, float], ...], **options: bool |
 def fast() -> Measured:
     """Mean drag coefficient over 1 <= t U/D <= 3, 15 cells per diameter."""
     return fast_starts(((100, 0.05, 11.0), (500, 0.05, 11.0)))
+
+
+@VALIDATIONS.row(
+    "coupling.fast_start_of_what_stands",
+    source="the same cylinder stands and the fluid comes at once, Re 100 and 500, and 200 at 45 degrees",
+    because="2.5 %, as for one that moves: the two constants by which it is drawn in leave up to 1.2 % where they were"
+    " chosen (10 and 15 cells, 11 degrees), the box 0.3 %, directions the rest; noise at most 2 %, or the row fails",
+    tolerance=0.025,
+    slow=True,
+)
+def fast_and_held() -> Measured:
+    """Mean drag coefficient over 1 <= t U/D <= 3, 15 cells per diameter."""
+    return fast_starts(((100, 0.05, 11.0), (500, 0.05, 11.0), (200, 0.0444, 45.0)), held=True, stands=True)
 
 
 @VALIDATIONS.row(

@@ -35,10 +35,11 @@ class Local:
                 process = self.process(task, place)
                 alive.append(process)
                 try:
+                    if stopped:
+                        return Done(task, INTERRUPTED, "")
                     began = progress.now()
-                    return (
-                        Done(task, INTERRUPTED, "") if stopped else Done(task, *process.run(), progress.now() - began)
-                    )
+                    code, said = process.run()
+                    return Done(task, code, said, progress.now() - began)
                 except BaseException:
                     stopped = True
                     raise
