@@ -5,6 +5,7 @@
 
 import json
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +19,15 @@ BEGIN, END = "<!-- campaigns -->", "<!-- end of campaigns -->"
 HEADER = ("campaign", "date", "commit", "seed", "tries", "how they ended", "found wrong")
 
 
+made_at = cache(mark)
+"""Date and commit of the campaign: asked for once, since its own record changes the tree."""
+
+
 def record(campaign: str, seed: int, ends: Mapping[str, int], found: int, docs: Path = DOCS) -> None:
     """Keep what a campaign came to, in place of what the same one (of this commit and seed) came to before."""
     file = docs / "campaigns.json"
     rows = json.loads(file.read_text(encoding="utf-8")) if file.exists() else []
-    row: dict[str, Any] = {"campaign": campaign, **mark(), "seed": seed}
+    row: dict[str, Any] = {"campaign": campaign, **made_at(), "seed": seed}
     same = ("campaign", "commit", "seed")
     rows = [it for it in rows if any(it[key] != row[key] for key in same)]
     rows.append({**row, "tries": sum(ends.values()), "ends": dict(sorted(ends.items())), "found": found})
