@@ -25,8 +25,9 @@ from porescale.output import conclude, options
 
 HERE = Path(__file__).resolve().parent
 MIDDLE = 12  # rows of soil whose angle of friction is varied
-LITTLE = "soil.numerics.damping=0.05"
-"""A quarter of the damping that soil has if nothing is said."""
+DEPTH = 0.03  # m, of the column
+LITTLE = f"soil.numerics.damping_viscosity={0.25 * DEPTH * math.sqrt(GRAVITY * DEPTH):.4g}"
+"""A quarter of the damping that soil has if nothing is said, H √(g H)."""
 FLOW_ROWS = (10, 20, 40)
 GRADIENT = 0.2
 SEEN: dict[str, tuple[str, Callable[[Fall], float]]] = {

@@ -84,7 +84,7 @@ def test_the_command_compares_and_writes_its_table_on_a_tiny_set_up(case):
     assert all(line.endswith("| no |") for line in late)
 
 
-def test_the_record_agrees_in_the_front_with_little_damping_and_not_with_the_usual():
+def test_the_record_holds_the_front_with_little_damping_which_the_usual_does_not_reach():
     folder = CASES / "micro_to_macro"
     numbers = json.loads((folder / "recorded.json").read_text(encoding="utf-8"))["numbers"]
     name = "front of soil with little damping over that of grains"
