@@ -22,6 +22,7 @@ HERE = Path(__file__).resolve().parent
 COLOURS = {"dense": "tab:blue", "medium": "tab:green", "loose": "tab:red"}
 LENGTH = 0.024  # m, of the column
 SMOOTH = 20  # rows, of the pore pressure: 0.05 s, ten times what sound takes through the column
+BUOYANT = 1500.0  # kg/m3, of grains in the liquid
 HYDROSTATIC = 1000.0 * ps.GRAVITY * (0.026 - 0.002)  # Pa, at the probe
 
 # Rondon, Pouliquen & Aussillous (2011), as digitised by the authors of SedFoam (tutorials/Py/DATA/Rondon2012 of its
@@ -78,7 +79,7 @@ def numbers(one: dict[str, Any]) -> dict[str, float]:
     weight on the base (Pa) and that time (s)."""
     time, front, top, pressure = np.array(one["rows"]).T
     height, excess = top[0], np.convolve(pressure - HYDROSTATIC, np.full(SMOOTH, 1.0 / SMOOTH), "valid")
-    weight, fall = 1500.0 * ps.GRAVITY * one["fraction"] * height, float(np.sqrt(height / ps.GRAVITY))
+    weight, fall = BUOYANT * ps.GRAVITY * one["fraction"] * height, float(np.sqrt(height / ps.GRAVITY))
     gone = (front - LENGTH) / LENGTH
     half = time[gone >= 0.5]
     return {

@@ -1,9 +1,10 @@
 """A dry column let go, of grains and of the soil that they make; how far, how high and how soon, read alike of both."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -50,32 +51,31 @@ class Fall:
         return float(self.centre[-1])
 
 
+def followed(simulation: Any, centre: Callable[[], float]) -> tuple[Floats, Floats]:
+    """Times (t,) s of looks at a column until its scene ends, and its ``centre()`` (t,) m then."""
+    rows = [(simulation.time, centre())]
+    while simulation.time < simulation.scene.time.end:
+        simulation.advance(max(1, round(LOOKS / simulation.step_seconds)))
+        rows.append((simulation.time, centre()))
+    times, centres = np.array(rows).T
+    return times, centres
+
+
 def grains_fall(seed: int, settings: Sequence[str] = ()) -> Fall:
     """The column of grains of column.toml with another packing, and ``settings``."""
     simulation = ps.build(ps.load(HERE / "column.toml", settings=[f"grains.packing.seed={seed}", *settings]))
     assert simulation.grains
-    d, rows = simulation.grains.discs, []
-    each = max(1, round(LOOKS / simulation.step_seconds))
-    while True:
-        rows.append((simulation.time, float(np.average(d.position[:, 0], weights=d.mass))))
-        if simulation.time >= simulation.scene.time.end:
-            break
-        simulation.advance(each)
-    times, centre = np.array(rows).T
+    d = simulation.grains.discs
+    times, centre = followed(simulation, lambda: float(np.average(d.position[:, 0], weights=d.mass)))
     return Fall(times, centre, d.position.copy(), d.mass.copy())
 
 
 def soil_falls(settings: Sequence[str] = ()) -> Fall:
     """The column of soil of ground.toml, which has taken over material.toml, with ``settings``."""
-    simulation, rows = cs.build(cs.load(HERE / "ground.toml", settings=settings)), []
+    simulation = cs.build(cs.load(HERE / "ground.toml", settings=settings))
     scene = simulation.scene
     assert scene.soil
     x = simulation.flow.soil.x[: simulation.flow.soil.soil]
-    while True:
-        rows.append((simulation.time, float(x[:, 0].mean())))
-        if simulation.time >= scene.time.end:
-            break
-        simulation.advance(max(1, round(LOOKS / simulation.step_seconds)))
-    times, centre = np.array(rows).T
+    times, centre = followed(simulation, lambda: float(x[:, 0].mean()))
     mass = np.full(len(x), scene.soil.density * scene.numerics.spacing**2)
     return Fall(times, centre, x.copy(), mass)
