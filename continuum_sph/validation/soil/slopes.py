@@ -150,12 +150,12 @@ def layer(
 
 
 @functools.cache
-def left_speed(rows: int, seconds: float = 1.5) -> float:
-    """Mean speed (m/s) that an endless strewn layer two degrees below its limit has after ``seconds``.
+def left_speed(rows: int, degrees: float = NEAR, seconds: float = 1.5) -> float:
+    """Mean speed (m/s) that an endless strewn layer on a slope has after ``seconds``.
 
     It starts without shear and with K0 < 1, so it bears less than its limit while its stress turns, and slides at first.
     """
-    flow = run_until(layer(NEAR, rows, strewn=0.2), seconds)
+    flow = run_until(layer(degrees, rows, strewn=0.2), seconds)
     return abs(float(flow.soil.v[: flow.soil.soil, 0].mean()))
 
 
