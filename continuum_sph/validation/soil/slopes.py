@@ -153,22 +153,22 @@ def layer(
 def left_speed(rows: int, degrees: float = NEAR, seconds: float = 1.5) -> float:
     """Mean speed (m/s) that an endless strewn layer on a slope has after ``seconds``.
 
-    It starts without shear and with K0 < 1, so it bears less than its limit while its stress turns, and slides at first.
+    It starts without shear and with K0 < 1: it bears less than its limit while its stress turns, and slides at first.
     """
     flow = run_until(layer(degrees, rows, strewn=0.2), seconds)
     return abs(float(flow.soil.v[: flow.soil.soil, 0].mean()))
 
 
 SHEAR = STIFFNESS / (2.0 * (1.0 + POISSON))  # Pa, G
-BRAKED = GRAVITY * (TAN_PHI * math.cos(math.radians(NEAR)) - math.sin(math.radians(NEAR)))  # m/s², of a layer that slides
+BRAKED = GRAVITY * (TAN_PHI * math.cos(math.radians(NEAR)) - math.sin(math.radians(NEAR)))  # m/s², what slides
 
 
 @VALIDATIONS.row(
     "continuum.soil_layer_near_its_limit_stops",
     source="exact: below atan(sin φ) = 26.6° no layer of soil without dilatancy goes on sliding; from rest without "
     "shear, 20, 40 and 80 rows on 24.6°",
-    because="what braked it while it slid, g (sin φ cos β - sin β), is left over when it stops, and lets it swing about "
-    "its place with its slowest period, 4 H/√(G/ρ): by that over π √(G/ρ)/2H",
+    because="what braked it while it slid, g (sin φ cos β - sin β), is left over when it stops, and lets it swing "
+    "about its place with its slowest period, 4 H/√(G/ρ): by that over π √(G/ρ)/2H",
     tolerance=BRAKED / (0.5 * math.pi * math.sqrt(SHEAR / DENSITY)),
     slow=True,
 )

@@ -8,7 +8,7 @@ from continuum_sph.validation.soil.slopes import NEAR, layer
 
 
 def taken(ratio):
-    """Largest rate over α c/h at which damping takes a wave on a square lattice, h = ``ratio`` spacings, Wendland C2."""
+    """Largest rate over α c/h of damping, over waves on a square lattice, h = ``ratio`` spacings, Wendland C2."""
     h, reach = ratio, int(np.ceil(2 * ratio))
     a, b = np.meshgrid(np.arange(-reach, reach + 1.0), np.arange(-reach, reach + 1.0))
     to = np.column_stack((a.ravel(), b.ravel()))
