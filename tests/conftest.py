@@ -1,10 +1,12 @@
 """Options of the test suite: slow tests are left out unless asked for, and can be run in shares."""
 
+import gc
 import os
 import random
 import signal
 import sys
 import tracemalloc
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -19,6 +21,9 @@ pytest_plugins = ["tests.browser"]
 # The same examples on every machine, however slow: a failure can be repeated, and a kernel may be compiled within one.
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
+
+# Compiling makes many objects and few circles of them: looking for those after every 700 took a seventh of its time.
+gc.set_threshold(50_000, 20, 50)
 
 # Tests compare one thread with two, on machines with one core too; read by numba when it is first imported.
 os.environ.setdefault("NUMBA_NUM_THREADS", str(max(2, os.cpu_count() or 1)))
@@ -55,11 +60,20 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     left = set(slow) - set(kept)
     items[:] = [item for item in items if item not in left]
     config.hook.pytest_deselected(items=list(left))
+    if hasattr(config, "workerinput"):
+        long_first(items)
     if config.option.shuffle is not None:
         dice = random.Random(config.option.shuffle)
         files = {path: dice.random() for path in sorted({item.path for item in items})}
         places = {item.nodeid: dice.random() for item in items}
         items.sort(key=lambda item: (files[item.path], places[item.nodeid]))
+
+
+def long_first(items: list[pytest.Item]) -> None:
+    """Files with slow tests, then those with many: no worker begins with a long file when the other is about to end."""
+    tests = Counter(item.path for item in items)
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: (item.path not in slow, -tests[item.path]))
 
 
 def process_state() -> dict[str, Any]:
