@@ -6,7 +6,6 @@ import random
 import signal
 import sys
 import tracemalloc
-from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ import pytest
 from hypothesis import settings
 
 from tests.compile_times import CompileTimes
+from tests.shares import long_first, share
 
 pytest_plugins = ["tests.browser"]
 
@@ -36,7 +36,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--share", help="of the slow tests run every n-th, from the k-th, beside the others: k/n")
+    parser.addoption("--share", help="of the slow tests run an n-th, the k-th, beside the others: k/n")
     parser.addoption("--shuffle", type=int, help="run files, and the tests of each, in an order by this seed")
     parser.addoption("--compile-times", action="store_true", help="say which kernels took how long to compile")
 
@@ -53,10 +53,11 @@ def pytest_configure(config: pytest.Config) -> None:
             plugin.listen()
 
 
+@pytest.hookimpl(trylast=True)  # once tests that share a parameter stand together
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     slow = [item for item in items if item.get_closest_marker("slow")]
     part, parts = map(int, (config.option.share or "0/1").split("/"))
-    kept = slow[part::parts] if config.option.share or config.option.markexpr else []
+    kept = share(slow, part, parts) if config.option.share or config.option.markexpr else []
     left = set(slow) - set(kept)
     items[:] = [item for item in items if item not in left]
     config.hook.pytest_deselected(items=list(left))
@@ -67,13 +68,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         files = {path: dice.random() for path in sorted({item.path for item in items})}
         places = {item.nodeid: dice.random() for item in items}
         items.sort(key=lambda item: (files[item.path], places[item.nodeid]))
-
-
-def long_first(items: list[pytest.Item]) -> None:
-    """Files with slow tests, then those with many: no worker begins with a long file when the other is about to end."""
-    tests = Counter(item.path for item in items)
-    slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: (item.path not in slow, -tests[item.path]))
 
 
 def process_state() -> dict[str, Any]:
