@@ -164,6 +164,10 @@ def test_a_choice_that_does_nothing_is_warned_of():
     assert "nothing solid in the fluid" in warnings(channel(disc=[], fluid__solid_operator="odd-SC1"))
     assert "nothing solid in the fluid" not in warnings(channel(disc=[]))
     assert "free grains ran away" in warnings(column(fluid__solid_operator="SC3"))
+    narrow = {"fluid__solid_operator": "narrow-wall"}
+    assert "free grains ran away" in warnings(column(**narrow))
+    assert "is made for 0.1875" in warnings(channel(**narrow, fluid__magic=0.0417))
+    assert "is made for" not in warnings(channel(**narrow)) + warnings(channel(fluid__magic=0.0417))
     low = {"fluid__viscosity": 3e-7}  # cell Reynolds number 0.1 * 2e-4/3e-7 = 67
     assert "'trt' is known to hold up to 51" in warnings(channel(**low))
     assert "relaxation time" not in warnings(channel(**low, fluid__operator="central"))

@@ -32,6 +32,7 @@ from porescale.builders.initial.placed import by_hand
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
+from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.dem.sanity import WORST_OF_TRAVELLING_CORNERS, WORST_TRAVEL
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.scales import Scales
@@ -235,6 +236,12 @@ def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | N
     ):
         warnings.append(
             f"fluid.magic = {fluid.magic:g} is not used: the operator {fluid.operator!r} has no such parameter"
+        )
+    made_for = SOLID_OPERATORS[fluid.solid_operator].magic
+    if made_for is not None and fluid.magic != made_for:
+        warnings.append(
+            f"fluid.magic = {fluid.magic:g}: the solid operator {fluid.solid_operator!r} is made for {made_for:g}, and"
+            " drag in dense beds is some 10 % off with another; leave it out"
         )
     default = type(fluid).model_fields["solid_operator"].default
     if sizes is None and not (scene.rectangle or scene.ring) and (fluid.solid_operator != default or fluid.weighting):

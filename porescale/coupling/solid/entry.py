@@ -31,8 +31,9 @@ class SolidOperator:
     What follows from it:  radius_shift : times the magic parameter, cells², over the radius: what a disc's radius lacks
     in the lattice;  half_step_correction : whether full cells are given a velocity whose time-centred value is the
     body's (load.py);  force_everywhere : whether the body force acts in the whole of a cell;  held_only : whether free
-    discs run away with it;  longest_relaxation_time : up to which drag is right;  holds : by weight;  order : place in
-    lists, the recommended one first.
+    discs run away with it;  longest_relaxation_time : up to which drag is right;  magic : the one magic parameter that
+    it is made for, None for any;  holds : by weight;  bed_at_rest : of one for held bodies, as ``Holds.bed``, by the
+    rows of validation instead of the map;  order : place in lists, the recommended one first.
     """
 
     name: str
@@ -46,5 +47,7 @@ class SolidOperator:
     force_everywhere: bool = False
     held_only: bool = False
     longest_relaxation_time: float = 1.5
+    magic: float | None = None
     holds: Mapping[str, Holds] = field(default_factory=dict)
+    bed_at_rest: tuple[tuple[float, float], ...] = ()
     order: int = 100

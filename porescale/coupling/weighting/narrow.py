@@ -1,0 +1,57 @@
+"""narrow = 4 k D S/(2 k D S + 3 t⁴ (1 + s) Q): the weight of the solid operator solid/narrow_wall.py.
+
+With t = 1 - e, k = tau - 1/2, D = e (e + E), S = t² + s and Q = D + G E;  2 in a full cell, which turns populations
+back.  Derived there.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from porescale.common.compiled.jit import inline
+from porescale.coupling.weighting.entry import Weighting
+from porescale.coupling.weighting.law import weight
+from porescale.lbm.collision.law import numbers
+
+BEND = 0.2
+"""s: of the share y = t³ (1 + s)/(t² + s) of the fluid's part in a wall's resistance, see solid/narrow_wall.py."""
+ONSET = 0.05
+"""E: solid fraction over which a cell turns from fluid to one with a wall."""
+GRADE = 0.5 * (1 + BEND) / (1 + 3 * BEND)
+"""G at magic parameter 3/16: such that the rate of q begins with the fluid's."""
+
+
+class NarrowWeight(NamedTuple):
+    """k : tau - 1/2;  bend : s;  onset : E;  start : G E."""
+
+    k: np.floating
+    bend: np.floating
+    onset: np.floating
+    start: np.floating
+
+
+@inline
+def narrow_weight(e, law):
+    """The weight of a solid fraction e, 0 to 1;  law: any with k, bend, onset and start."""
+    c = numbers(e)
+    t = c.one - e
+    tt = t * t
+    d = e * (e + law.onset)
+    half = c.two * law.k * d * (tt + law.bend)
+    return (half + half) / (half + c.three * tt * tt * (c.one + law.bend) * (d + law.start))
+
+
+@weight.of(NarrowWeight)
+def _weight(solid, theta, slip_x, slip_y, law):
+    """Weight of the summed solid fraction."""
+    return narrow_weight(min(numbers(solid).one, solid), law)
+
+
+WEIGHTING = Weighting(
+    name="narrow",
+    purpose="goes with the solid operator narrow-wall",
+    law=NarrowWeight,
+    constants={"bend": BEND, "onset": ONSET, "start": GRADE * ONSET},
+    general=False,
+    order=3,
+)
