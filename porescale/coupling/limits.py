@@ -62,13 +62,10 @@ def lightest(cells_per_diameter: float, solid_operator: str = "exact-wall", weig
 
 
 def cells_in_bed(solid_fraction: float, solid_operator: str = "exact-wall", weighting: str = "wall") -> float:
-    """Cells per diameter from which on the drag in a bed is within a tenth; infinite where none that was tried is.
+    """Cells per diameter from which on the drag in a bed is within a tenth; infinite where none of the map's is.
 
     A pair of solid operator and weight that is not in the table counts as the worst that is.
     """
     name = f"{solid_operator} {weighting}"
     tables = [BED_RIGHT[name]] if name in BED_RIGHT else list(BED_RIGHT.values())
-    known = SOLID_OPERATORS.get(solid_operator)
-    if known and known.bed_at_rest:
-        tables = [known.bed_at_rest]
     return max(next((cells for most, cells in rows if solid_fraction <= most), float("inf")) for rows in tables)

@@ -184,7 +184,7 @@ def check_regime(
     Adds refusals to ``faults`` and doubts to ``warnings``, each with its repair.
     """
     _check_mach(scales, speed, faults, warnings)
-    _check_operator(scene, scales, speed, sizes, warnings)
+    _check_operator(scene, scales, speed, sizes, faults, warnings)
     _check_thickness(scene.rectangle, scales, warnings)
     check_sound(scene, scales, warnings)
     check_gate(scene, scales, warnings)
@@ -223,7 +223,9 @@ def check_regime(
     return _check_pore_pressure(weight, column_height(packing, scene.gravity), scales, faults, warnings)
 
 
-def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, warnings: list[str]) -> None:
+def _check_operator(
+    scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, faults: list[Fault], warnings: list[str]
+) -> None:
     """Where the operators that the scene names oscillate, diverge or do not suit the scene."""
     assert scene.fluid
     fluid, lid = scene.fluid, any(side.speed for side in scene.domain.sides.values())
@@ -237,16 +239,20 @@ def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | N
         warnings.append(
             f"fluid.magic = {fluid.magic:g} is not used: the operator {fluid.operator!r} has no such parameter"
         )
+    default = type(fluid).model_fields["solid_operator"].default
+    if sizes is None and not (scene.rectangle or scene.ring) and (fluid.solid_operator != default or fluid.weighting):
+        warnings.append("fluid.solid_operator and fluid.weighting are not used: there is nothing solid in the fluid")
     made_for = SOLID_OPERATORS[fluid.solid_operator].magic
     if made_for is not None and fluid.magic != made_for:
         warnings.append(
             f"fluid.magic = {fluid.magic:g}: the solid operator {fluid.solid_operator!r} is made for {made_for:g}, and"
             " drag in dense beds is some 10 % off with another; leave it out"
         )
-    default = type(fluid).model_fields["solid_operator"].default
-    if sizes is None and not (scene.rectangle or scene.ring) and (fluid.solid_operator != default or fluid.weighting):
-        warnings.append("fluid.solid_operator and fluid.weighting are not used: there is nothing solid in the fluid")
-    if fluid.solid_operator in HELD_ONLY and scene.grains is not None:
+    if SOLID_OPERATORS[fluid.solid_operator].free_refused and scene.grains is not None:
+        problem = "is for bodies that are held, [[disc]], [[rectangle]] and [ring]: free grains run away with it"
+        others = " or ".join(repr(name) for name, row in SOLID_OPERATORS.items() if not row.held_only)
+        faults.append(Fault("fluid.solid_operator", fluid.solid_operator, problem, "", others, "take one of these"))
+    elif fluid.solid_operator in HELD_ONLY and scene.grains is not None:
         warnings.append(
             f"fluid.solid_operator = {fluid.solid_operator!r}: free grains ran away with it in every trial; it is for"
             " held discs"

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.common.compiled.jit import inline
 from porescale.coupling.weighting.entry import Weighting
 from porescale.coupling.weighting.law import weight
 from porescale.lbm.collision.law import numbers
@@ -30,21 +29,16 @@ class NarrowWeight(NamedTuple):
     start: np.floating
 
 
-@inline
-def narrow_weight(e, law):
-    """The weight of a solid fraction e, 0 to 1;  law: any with k, bend, onset and start."""
-    c = numbers(e)
+@weight.of(NarrowWeight)
+def _weight(solid, theta, slip_x, slip_y, law):
+    """Weight of the summed solid fraction."""
+    c = numbers(solid)
+    e = min(c.one, solid)
     t = c.one - e
     tt = t * t
     d = e * (e + law.onset)
     half = c.two * law.k * d * (tt + law.bend)
     return (half + half) / (half + c.three * tt * tt * (c.one + law.bend) * (d + law.start))
-
-
-@weight.of(NarrowWeight)
-def _weight(solid, theta, slip_x, slip_y, law):
-    """Weight of the summed solid fraction."""
-    return narrow_weight(min(numbers(solid).one, solid), law)
 
 
 WEIGHTING = Weighting(
