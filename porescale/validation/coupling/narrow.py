@@ -84,6 +84,7 @@ def held_in_dense_arrays() -> Measured:
     source="as for square arrays, solid fraction 0.1 to 0.4; hexagonal ones, 0.3 and 0.4",
     because="1 %, as with other solid operators: what dense arrays gain, looser ones must not lose",
     tolerance=REQUIRED,
+    slow=True,
 )
 def held_in_looser_arrays() -> Measured:
     """Drag at 10 cells per diameter and tau 0.8, of square arrays at tau 0.52, too; solid operator narrow-wall."""
