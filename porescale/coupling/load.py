@@ -9,7 +9,7 @@ order afterwards, so that loads do not depend on threads.
 
 import numpy as np
 
-from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, prefetch, tree_sum, unchecked_view
+from porescale.common.compiled.jit import fma, inline, kernel, parallel_kernel, prange, prefetch, tree_sum, unchecked_view
 from porescale.coupling.coverage.rows import AHEAD, BLOCK, blocks_inside, motion_of_block, motion_of_row, solid_velocity
 
 total = tree_sum(BLOCK)
@@ -24,8 +24,8 @@ def load_of_cell(e, gained, i, block):
     """
     rho, jx, jy = gained
     vx, vy = solid_velocity(e, i, block)
-    gy = e * (jy - rho * vy)
-    gx = e * (jx - rho * vx)
+    gy = e * fma(-rho, vy, jy)
+    gx = e * fma(-rho, vx, jx)
     m = e * rho
     x, y = block[0] + i, block[1]
     return gx, gy, x * gy - y * gx, m, m * (x * x + y * y)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch, unchecked_view
+from porescale.common.compiled.jit import fma, inline, parallel_kernel, prange, prefetch, unchecked_view
 from porescale.common.core.aligned import aligned_zeros
 
 BLOCK = 16
@@ -197,7 +197,7 @@ def motion_of_block(n, b, row, patches, motion):
 def solid_velocity(e, i, block):
     """Velocity of a body in cell ``i`` of a block of which it covers e;  block: ``motion_of_block``."""
     _, _, turning, twist, vx, cx, vy, cy = block
-    return vx + e * cx, vy + turning * i + e * (cy + twist * i)
+    return fma(e, cx, vx), fma(e, fma(twist, i, cy), fma(turning, i, vy))
 
 
 @inline
