@@ -9,7 +9,8 @@ order afterwards, so that loads do not depend on threads.
 
 import numpy as np
 
-from porescale.common.compiled.jit import fma, inline, kernel, parallel_kernel, prange, prefetch, tree_sum, unchecked_view
+from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, prefetch, tree_sum, unchecked_view
+from porescale.common.compiled.simd import fma
 from porescale.coupling.coverage.rows import AHEAD, BLOCK, blocks_inside, motion_of_block, motion_of_row, solid_velocity
 
 total = tree_sum(BLOCK)

@@ -31,7 +31,7 @@ from numba.extending import intrinsic, overload
 
 from porescale.common.compiled import library
 from porescale.common.compiled.cache import keep_only_used, mark_used, writable
-from porescale.common.compiled.jit import GIVEN, body_for, cache_folder, fma, prange, prefetch, thread, unchecked_view
+from porescale.common.compiled.jit import GIVEN, body_for, cache_folder, prange, prefetch, thread, unchecked_view
 from porescale.common.compiled.kernel_key import Unknown, key_of, warning
 from porescale.common.compiled.turns import TURNS
 
@@ -269,19 +269,6 @@ _fetch: Any = intrinsic(_prefetch)
 @overload(prefetch, strict=False, jit_options=_INLINED)
 def _choose_fetch(array: Any, at: Any) -> Any:
     return lambda array, at: _fetch(array, at)
-
-
-def _fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
-    """Signature and code of ``fma`` in kernels."""
-    return a(a, a, a), lambda context, builder, signature, values: builder.fma(*values)
-
-
-_fuse: Any = intrinsic(_fused)
-
-
-@overload(fma, strict=False, jit_options=_INLINED)
-def _choose_fused(a: Any, b: Any, c: Any) -> Any:
-    return (lambda a, b, c: _fuse(a, b, c)) if a == b == c and isinstance(a, types.Float) else None
 
 
 def teach_tree_sum(total: Callable[..., Any], count: int) -> None:

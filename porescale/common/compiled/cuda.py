@@ -20,7 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from porescale.common.compiled.jit import Kernel, body_for, fma, unchecked_view
+from porescale.common.compiled import simd
+from porescale.common.compiled.jit import Kernel, body_for, unchecked_view
 from porescale.common.core.errors import Fault, InputError
 
 LEAST_CAPABILITY = (6, 0)
@@ -198,8 +199,10 @@ def _meaning(value: Any, law: Laws, real: type) -> Any:
         return _numbered()
     if value is unchecked_view:  # its plain form; inlined, since no device function may return a slice
         return cuda().jit(device=True, inline="always")(value)
-    if value is fma and not simulated():
+    if value is simd.fma and not simulated():
         return _device_fma()
+    if getattr(value, "__module__", "") == simd.__name__ and not simulated():  # of numbers: a thread has no lanes
+        return device_function(import_module(simd.CODE).SCALAR[value], law, real)
     if isinstance(value, Kernel):
         return device_function(value.py_func, law, real)
     meaning = getattr(value, "meaning", None)

@@ -9,12 +9,10 @@ law would survive inside a cached pair loop; kernels are therefore kept under a 
 see kernel_key.py.  An edit compiles anew the kernels that contain what was edited, and no others.
 """
 
-import ctypes
 import os
 import sys
 from collections.abc import Callable, Mapping
-from ctypes.util import find_library
-from functools import cache, cached_property, update_wrapper
+from functools import cached_property, update_wrapper
 from importlib import import_module
 from pathlib import Path
 from threading import RLock
@@ -208,25 +206,6 @@ def prefetch(array: Any, at: Any) -> None:
 
     For entries that a loop reaches in an order that no hardware predicts.  Does nothing else, nor in plain Python.
     """
-
-
-def fma(a: Any, b: Any, c: Any) -> Any:
-    """a b + c of three numbers of one precision, rounded once: one instruction where a processor has it.
-
-    Written out where it saves time, since a compiler that chose by itself would not choose alike in every kernel.  The
-    same bits on every machine; slow on those before 2013, which have no such instruction.
-    """
-    single = type(a) is np.float32
-    return type(a)(_fused(single)(a, b, c))
-
-
-@cache
-def _fused(single: bool) -> Callable[..., float]:
-    """C's own function of that, for float or double."""
-    library = ctypes.CDLL(find_library("m") or ("ucrtbase" if os.name == "nt" else None))
-    found, kind = (library.fmaf, ctypes.c_float) if single else (library.fma, ctypes.c_double)
-    found.restype, found.argtypes = kind, [kind] * 3
-    return found
 
 
 def tree_sum(count: int) -> Any:

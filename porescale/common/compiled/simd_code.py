@@ -16,10 +16,13 @@ from numba.extending import intrinsic, models, overload, register_model
 from porescale.common.compiled.simd import (
     LANES,
     WORDS,
+    choose,
+    fma,
     load,
     mask_tail,
     maximum,
     minimum,
+    ramp,
     reduce_add,
     rint,
     sqrt,
@@ -99,6 +102,10 @@ _operator((operator.truediv, operator.itruediv), lambda builder, a, b: builder.f
 _operator((operator.neg,), lambda builder, a: builder.fneg(a), 1)
 
 
+SCALAR: dict[Any, Callable[..., Any]] = {}
+"""What the functions are where no argument is a vector."""
+
+
 def _function(plain: Any, code: Callable[..., Any], scalar: Any) -> None:
     """Let ``plain`` mean ``code`` (builder, values) in kernels where an argument is a vector, else ``scalar``."""
     count = plain.__code__.co_argcount
@@ -109,6 +116,8 @@ def _function(plain: Any, code: Callable[..., Any], scalar: Any) -> None:
 
     one: Any = intrinsic(lambda typing, a: made())
     two: Any = intrinsic(lambda typing, a, b: made())
+    three: Any = intrinsic(lambda typing, a, b, c: made())
+    four: Any = intrinsic(lambda typing, a, b, c, d: made())
 
     def choose_one(a: Any) -> Any:
         """The function of one argument, by its type."""
@@ -118,16 +127,26 @@ def _function(plain: Any, code: Callable[..., Any], scalar: Any) -> None:
         """The function of two arguments, by their types."""
         return (lambda a, b: two(a, b)) if lanes in (a, b) else scalar
 
-    overload(plain, strict=False, jit_options=INLINED)(choose_one if count == 1 else choose_two)
+    def choose_three(a: Any, b: Any, c: Any) -> Any:
+        """The function of three arguments, by their types."""
+        return (lambda a, b, c: three(a, b, c)) if lanes in (a, b, c) else scalar
+
+    def choose_four(a: Any, b: Any, c: Any, d: Any) -> Any:
+        """The function of four arguments, by their types."""
+        return (lambda a, b, c, d: four(a, b, c, d)) if lanes in (a, b, c, d) else scalar
+
+    chosen: Any = {1: choose_one, 2: choose_two, 3: choose_three, 4: choose_four}
+    overload(plain, strict=False, jit_options=INLINED)(chosen[count])
+    SCALAR[plain] = scalar
 
 
 def _by_machine(name: str) -> Callable[..., Any]:
-    """Code of LLVM's function of one vector of that name."""
+    """Code of LLVM's function of vectors of that name."""
 
-    def code(builder: Any, a: Any) -> Any:
+    def code(builder: Any, *values: Any) -> Any:
         """A call of it."""
-        kind = ir.FunctionType(VECTOR, [VECTOR])
-        return builder.call(get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f64"), [a])
+        kind = ir.FunctionType(VECTOR, [VECTOR] * len(values))
+        return builder.call(get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f64"), values)
 
     return code
 
@@ -141,11 +160,23 @@ _function(sqrt, _by_machine("sqrt"), lambda a: np.sqrt(a))
 _function(rint, _by_machine("rint"), lambda a: np.rint(a))
 _function(maximum, _chosen(">"), lambda a, b: a if a > b else b)
 _function(minimum, _chosen("<"), lambda a, b: a if a < b else b)
+_fused: Any = intrinsic(lambda typing, a, b, c: (a(a, a, a), lambda context, builder, _, values: builder.fma(*values)))
+_function(fma, _by_machine("fma"), lambda a, b, c: _fused(a, b, c))
+_function(
+    choose,
+    lambda builder, a, b, larger, other: builder.select(builder.fcmp_ordered(">", a, b), larger, other),
+    lambda a, b, larger, other: larger if a > b else other,
+)
 
 
 def _zero(typing: Any) -> Any:
     """Signature and code of ``zeros`` in kernels."""
     return lanes(), lambda context, builder, _, values: ir.Constant(VECTOR, [0.0] * LANES)
+
+
+def _steps(typing: Any) -> Any:
+    """Signature and code of ``ramp`` in kernels."""
+    return lanes(), lambda context, builder, _, values: ir.Constant(VECTOR, [float(k) for k in range(LANES)])
 
 
 def _sum(typing: Any, a: Any) -> Any:
@@ -170,16 +201,18 @@ def _put_line(typing: Any, line: Any, first: Any, end: Any, values: Any) -> Any:
     def code(context: Any, builder: Any, _: Any, taken: Any) -> Any:
         """One store where all lanes lie before the end, else those that do, one by one."""
         data = context.make_array(line)(context, builder, taken[0]).data
-        at = builder.gep(data, [taken[1]])
+        at, values = builder.gep(data, [taken[1]]), taken[3]
+        if line.dtype == types.float32:
+            values = builder.fptrunc(values, ir.VectorType(ir.FloatType(), LANES))
         whole = builder.icmp_signed("<=", builder.add(taken[1], COUNT(LANES)), taken[2])
         with builder.if_else(whole) as (vector, single):
             with vector:
-                builder.store(taken[3], builder.bitcast(at, VECTOR.as_pointer()), align=8)
+                builder.store(values, builder.bitcast(at, values.type.as_pointer()), align=line.dtype.bitwidth // 8)
             with single:
                 for lane in range(LANES - 1):
                     inside = builder.icmp_signed("<", builder.add(taken[1], COUNT(lane)), taken[2])
                     with builder.if_then(inside):
-                        one = builder.extract_element(taken[3], SHORT(lane))
+                        one = builder.extract_element(values, SHORT(lane))
                         builder.store(one, builder.gep(at, [COUNT(lane)]))
         return context.get_dummy_value()
 
@@ -249,6 +282,7 @@ def _joined(builder: Any, parts: list[Any]) -> Any:
 
 
 _nothing: Any = intrinsic(_zero)
+_ramp: Any = intrinsic(_steps)
 _total: Any = intrinsic(_sum)
 _line: Any = intrinsic(_take_line)
 _keeping: Any = intrinsic(_keep)
@@ -259,6 +293,11 @@ _ascending: Any = intrinsic(_put_ascending)
 @overload(zeros, strict=False, jit_options=INLINED)
 def _choose_nothing() -> Any:
     return lambda: _nothing()
+
+
+@overload(ramp, strict=False, jit_options=INLINED)
+def _choose_ramp() -> Any:
+    return lambda: _ramp()
 
 
 @overload(reduce_add, strict=False, jit_options=INLINED)

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import fma, inline, parallel_kernel, prange, prefetch, unchecked_view
+from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch, unchecked_view
+from porescale.common.compiled.simd import fma
 from porescale.common.core.aligned import aligned_zeros
 
 BLOCK = 16
@@ -19,7 +20,7 @@ BLOCK = 16
 AHEAD = 12
 """Entries of a row ahead of which patches are fetched: bodies lie apart in memory, and waiting for each would cost more
 than all that is done with it."""
-LISTING = 16
+LISTING = 4
 """Parts of the lattice whose rows are listed side by side; any number gives the same lists."""
 
 

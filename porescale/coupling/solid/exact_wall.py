@@ -28,7 +28,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.common.compiled.jit import fma, inline
+from porescale.common.compiled.jit import inline
+from porescale.common.compiled.simd import fma
 from porescale.coupling.coverage.soft_rim import SLIP_FACTOR
 from porescale.coupling.solid.entry import Holds, SolidOperator
 from porescale.coupling.solid.law import (

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from porescale.common.compiled.jit import fma, inline
+from porescale.common.compiled.jit import inline
+from porescale.common.compiled.simd import fma
 from porescale.lbm.collision.entry import Operator, Stability
 from porescale.lbm.collision.law import (
     collide,
