@@ -21,10 +21,11 @@ import numpy as np
 from porescale.common.compiled.jit import when_compiling
 
 LANES = 4  # twice as many are 2 % faster where vectors are that wide (measured), and half as many registers elsewhere
+EIGHT = 8  # numbers of either precision in the vectors of `load_eight`: a vector of float32 where they are 256 bits
 WORDS = 32  # that `store_sorted` compares at once: a row of partners
 COLUMNS = 8  # that `gather_rows` reads of a record
-CODE = f"{__package__}.simd_code"
-"""Module with the compiled form of these functions."""
+CODE, ROWS_CODE = f"{__package__}.simd_code", f"{__package__}.simd_rows_code"
+"""Modules with the compiled form of these functions: of those on vectors, and of those on lines and rows."""
 
 
 def sqrt(a: Any) -> Any:
@@ -112,6 +113,24 @@ def store(line: Any, first: Any, end: Any, values: Any) -> None:
     line[first : first + count] = values[:count]
 
 
+def load_eight(line: Any, first: Any) -> Any:
+    """Entries ``line[first]`` to ``line[first + 7]`` of an array of float32 or float64, as a vector of that.
+
+    Not checked: that they are there.
+    """
+    return line[first : first + EIGHT]
+
+
+def ramp_eight(line: Any) -> Any:
+    """0 to 7 as a vector of the precision of an array."""
+    return np.arange(EIGHT).astype(line.dtype)
+
+
+def store_eight(line: Any, first: Any, values: Any) -> None:
+    """Write a vector of eight to ``line[first]`` and on.  Not checked: that they are there."""
+    line[first : first + EIGHT] = values
+
+
 def store_sorted(line: Any, count: Any, target: Any, first: Any) -> None:
     """Write the first ``count`` entries of ``line`` to ``target[first]`` and on, the least first; both int32.
 
@@ -133,11 +152,11 @@ def row_gatherer(columns: int) -> Any:
         chosen = [row[k] - before if k < end else other for k in range(first, first + LANES)]
         return tuple(record[chosen, column : column + columns].T)
 
-    when_compiling(lambda _: import_module(CODE).teach_rows(take, columns))
+    when_compiling(lambda _: import_module(ROWS_CODE).teach_rows(take, columns))
     return take
 
 
 gather_rows = row_gatherer(COLUMNS)
 gather_four = row_gatherer(4)
 gather_two = row_gatherer(2)
-when_compiling(lambda _: import_module(CODE))
+when_compiling(lambda _: import_module(ROWS_CODE))
