@@ -1,5 +1,6 @@
 """Options of the test suite: slow tests are left out unless asked for, and can be run in shares."""
 
+import gc
 import os
 import random
 import signal
@@ -13,12 +14,16 @@ import pytest
 from hypothesis import settings
 
 from tests.compile_times import CompileTimes
+from tests.shares import long_first, share
 
 pytest_plugins = ["tests.browser"]
 
 # The same examples on every machine, however slow: a failure can be repeated, and a kernel may be compiled within one.
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
+
+# Compiling makes many objects and few circles of them: looking for those after every 700 took a seventh of its time.
+gc.set_threshold(50_000, 20, 50)
 
 # Tests compare one thread with two, on machines with one core too; read by numba when it is first imported.
 os.environ.setdefault("NUMBA_NUM_THREADS", str(max(2, os.cpu_count() or 1)))
@@ -31,7 +36,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--share", help="of the slow tests run every n-th, from the k-th, beside the others: k/n")
+    parser.addoption("--share", help="of the slow tests run an n-th, the k-th, beside the others: k/n")
     parser.addoption("--shuffle", type=int, help="run files, and the tests of each, in an order by this seed")
     parser.addoption("--compile-times", action="store_true", help="say which kernels took how long to compile")
 
@@ -48,13 +53,16 @@ def pytest_configure(config: pytest.Config) -> None:
             plugin.listen()
 
 
+@pytest.hookimpl(trylast=True)  # once tests that share a parameter stand together
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     slow = [item for item in items if item.get_closest_marker("slow")]
     part, parts = map(int, (config.option.share or "0/1").split("/"))
-    kept = slow[part::parts] if config.option.share or config.option.markexpr else []
+    kept = share(slow, part, parts) if config.option.share or config.option.markexpr else []
     left = set(slow) - set(kept)
     items[:] = [item for item in items if item not in left]
     config.hook.pytest_deselected(items=list(left))
+    if hasattr(config, "workerinput"):
+        long_first(items)
     if config.option.shuffle is not None:
         dice = random.Random(config.option.shuffle)
         files = {path: dice.random() for path in sorted({item.path for item in items})}

@@ -8,6 +8,10 @@ from porescale.common.core.errors import Fault, InputError
 
 FALL = 7.0
 """2 · 2π W(0) h² of Wendland C2: what a zig-zag from particle to particle falls by at most, over χ and shear strain."""
+DAMPED = 0.8
+"""Longest step over h/(α c).  Damping takes λ dt of a zig-zag of velocity in a step, with the velocities before it, so
+beyond 2 it swings ever wider.  Over all waves on a square lattice λ is at most 2.19 α c/h (Wendland C2, h = 1 to 2
+spacings; the spline 1.97): 0.91 h/(α c).  What is left is for particles that crowd."""
 RULES = ("sound", "acceleration", "other layers")
 
 
@@ -50,6 +54,11 @@ class SoilLaw:
             raise InputError(Fault(key, self.sound_diffusion, "swings ever wider", "", f"<= {most:.3g}", repair))
 
     @property
+    def share(self) -> float:
+        """Step that sound and damping allow, over h/c."""
+        return min(self.courant, DAMPED / self.damping) if self.damping > 0.0 else self.courant
+
+    @property
     def most(self) -> float:
         """Shear strain of one step that diffusion, and spacing recovery with it, follows.
 
@@ -65,12 +74,12 @@ class SoilLaw:
     def limits(self, acceleration: float, sound_rate: float, others: float) -> tuple[float, float, float]:
         """Steps allowed by sound, acceleration (m/s²) and other layers (s), s: eq. 49.
 
-        0.25/max(c/h), 0.25 √(h/|a|);  ``sound_rate``: the largest c/h, 1/s.  The third of eq. 49, h²/8ν with ν =
-        α c h/8 of the damping, is h/(α c) and never less than the first for α up to 4.
+        0.25/max(c/h), 0.25 √(h/|a|);  ``sound_rate``: the largest c/h, 1/s.  The first is DAMPED/α max(c/h) where that
+        is less: the third of eq. 49, for the damping.
         """
         h, infinite = self.smoothing.length, float("inf")
         return (
-            self.courant / sound_rate if sound_rate > 0.0 else infinite,
+            self.share / sound_rate if sound_rate > 0.0 else infinite,
             self.courant * (h / acceleration) ** 0.5 if acceleration > 0.0 else infinite,
             others,
         )

@@ -23,7 +23,6 @@ from continuum_sph.soil.material import Material
 
 LEVELLING = 6.4
 """χ over E/(ρ g H)."""
-FIRMEST = 4.0  # α at most, for steps as long as sound allows: see `parameters.SoilLaw.limits`
 MOST = 1000.0  # χ at most: a step follows a shear strain of 1/7χ
 WEIGHTLESS = 0.2, 100.0  # α and χ where nothing weighs
 
@@ -39,4 +38,4 @@ def steadied(material: Material, gravity: float, height: float, length: float) -
     softer = material.stiffness_at(0.5 * weight * (1.0 + material.rest)) / material.stiffness
     sound = math.sqrt(material.column_modulus * softer / material.density)
     damping = height * math.sqrt(gravity * height) / (sound * length)
-    return min(FIRMEST, damping), min(MOST, LEVELLING * material.stiffness * softer / weight)
+    return damping, min(MOST, LEVELLING * material.stiffness * softer / weight)

@@ -19,7 +19,7 @@ CASES = [
     *[pytest.param("exact-wall", "wall", name, False, marks=pytest.mark.slow) for name in ("mrt", "bgk", "central")],
 ]  # fmt: skip
 """Solid operator, weight, fluid operator, soft rim."""
-every = pytest.mark.parametrize(("solid", "weight", "fluid_operator", "soft"), CASES)
+every = pytest.mark.parametrize(("solid", "weight", "fluid_operator", "soft"), CASES, scope="module")
 NOTHING = 1e-30
 """Of a force: less than any rounding, in kernels compiled for a force, so that each is compiled once."""
 SLIP = (0.02, 0.01, 0.03)

@@ -19,6 +19,7 @@ from tests.reference.same_run import differences, state_of
 QUICK = "tank"
 """What has few kernels, which other tests compile anyway."""
 NAMES = [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in KINDS if name != QUICK)]
+"""With the scope of a module pytest runs all tests of one after the other."""
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +44,7 @@ def output(values: dict[str, Any], finer: float) -> list[str]:
     return [part for word in (*words, "output.checkpoint_seconds=0.01") for part in ("--set", word)]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 @pytest.mark.parametrize("finer", [3.0, pytest.param(0.3, marks=pytest.mark.slow)])
 def test_output_of_any_cadence_leaves_the_same_state(tmp_path, untouched, name, finer):
     one, folder = untouched(name)
@@ -53,7 +54,7 @@ def test_output_of_any_cadence_leaves_the_same_state(tmp_path, untouched, name, 
     assert state_of(out) == state_of(folder)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 def test_runs_repeat_to_the_bit_at_one_thread_and_at_all(tmp_path, untouched, name):
     one, folder = untouched(name)
     for threads in (1, max(2, os.cpu_count() or 1)):
@@ -64,7 +65,7 @@ def test_runs_repeat_to_the_bit_at_one_thread_and_at_all(tmp_path, untouched, na
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("name", KINDS, scope="module")
 def test_another_scene_is_another_run(tmp_path, untouched, name):  # the twin that must fail
     one, folder = untouched(name)
     package, values = KINDS[name]
@@ -76,7 +77,7 @@ def test_another_scene_is_another_run(tmp_path, untouched, name):  # the twin th
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 def test_a_run_asked_to_stop_saves_the_step_says_so_and_goes_on(tmp_path, complaints, untouched, name, number):
     one, folder = untouched(name)
     out = tmp_path / "run"
@@ -91,7 +92,7 @@ def test_a_run_asked_to_stop_saves_the_step_says_so_and_goes_on(tmp_path, compla
     assert differences(out, folder) == []
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 def test_a_folder_that_goes_ends_its_run_in_a_line_and_is_not_made_again(tmp_path, complaints, untouched, name):
     one, folder = untouched(name)
     out, elsewhere = tmp_path / "run", tmp_path / "elsewhere"
@@ -107,7 +108,7 @@ def test_a_folder_that_goes_ends_its_run_in_a_line_and_is_not_made_again(tmp_pat
     assert differences(elsewhere, folder) == []
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 def test_a_second_run_in_the_folder_is_refused_and_the_first_does_not_notice(tmp_path, complaints, untouched, name):
     one, folder = untouched(name)
     out, codes = tmp_path / "run", []
@@ -124,7 +125,7 @@ def test_a_second_run_in_the_folder_is_refused_and_the_first_does_not_notice(tmp
     assert differences(out, folder) == []
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 def test_a_folder_below_a_file_is_refused_before_anything_is_built(tmp_path, complaints, untouched, name):
     one, _ = untouched(name)
     (tmp_path / "file").write_text("mine")

@@ -197,7 +197,7 @@ def refused(half: Half, run: Path, complaints: Callable[[], list[str]], builds: 
     return lines[0]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 def test_a_wrong_checkpoint_is_one_line_and_nothing_is_lost(tmp_path, complaints, halves, name):
     half = halves(name)
     other = another(name, halves, tmp_path / "other")
@@ -263,7 +263,7 @@ def test_indices_of_frames_and_bonds_are_checked(tmp_path, complaints, halves, w
     assert words in said
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 def test_a_sound_one_goes_on_to_the_same_bits(tmp_path, halves, name):  # the twin that must not fail
     half = halves(name)
     run = Path(shutil.copytree(half.folder, tmp_path / "run"))
@@ -273,7 +273,7 @@ def test_a_sound_one_goes_on_to_the_same_bits(tmp_path, halves, name):  # the tw
     assert differences(run, half.untouched) == []
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES, scope="module")
 def test_a_wrong_one_is_refused_before_a_model_is_built(tmp_path, complaints, halves, name):
     half = halves(name)
     run = Path(shutil.copytree(half.folder, tmp_path / "run"))

@@ -129,6 +129,11 @@ def test_a_slope_beyond_its_limit_goes():
 
 
 @pytest.mark.slow
+def test_a_layer_beyond_its_limit_does_not_stop():
+    assert slopes.left_speed(20, 28.0) > 10.0 * tolerance("continuum.soil_layer_near_its_limit_stops")
+
+
+@pytest.mark.slow
 def test_energy_without_what_parting_lifts_does_not_add_up():
     assert abs(energy.collapse(seconds=0.2).missing(without="parting")) > tolerance("continuum.soil_energy")
 
