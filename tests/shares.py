@@ -20,8 +20,15 @@ def share(tests: Iterable[pytest.Item], part: int, parts: int) -> list[pytest.It
     return [item for handful in list(handfuls.values())[part::parts] for item in handful]
 
 
+LONG = {"end_to_end", "manual", "validation"}
+"""Folders whose tests run whole programs and experiments."""
+
+
 def long_first(items: list[pytest.Item]) -> None:
-    """Files with slow tests, then those with many: no worker begins with a long file when the other is about to end."""
+    """Files with slow tests or in LONG, then others, of each those with many tests first.
+
+    No worker then begins with a long file when the other is about to end.
+    """
     tests = Counter(item.path for item in items)
-    slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: (item.path not in slow, -tests[item.path]))
+    first = {item.path for item in items if item.get_closest_marker("slow") or LONG & set(item.path.parts)}
+    items.sort(key=lambda item: (item.path not in first, -tests[item.path]))

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from porescale.builders.checks.contact import material_doubts
+from porescale.builders.checks.discs_alone import left_out
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
 from porescale.builders.checks.numbers import check_controls
@@ -83,6 +85,7 @@ def derive(scene: Scene) -> Derived:
         smallest = math.pi / 4 * sizes[0] ** 2 * least, sizes[0] / 2
         mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
         law, wall_law, every = plan.law_and_others(packing.material if packing else "", mean_mass)
+        warnings += material_doubts(scene)
         check_own_contact(scene.contact, every, *smallest)
         warnings += filter(None, [energy_of_mass(scene, every, *smallest)])
         if scene.clump:
@@ -116,7 +119,7 @@ def derive(scene: Scene) -> Derived:
     variation = 0.0
     if scales:
         doubts = too_few_cells(frames, scales.spacing), too_light(frames, scales.spacing, scales.density)
-        warnings += filter(None, doubts)
+        warnings += [*filter(None, doubts), *left_out(scene)]
         variation = check_regime(scene, scales, speed, sizes, faults, warnings)
     free = grain_count(scene) - len(scene.disc)
     for number in scene.loads.grains if scene.loads else ():

@@ -39,3 +39,15 @@ def test_a_wall_slips_by_what_the_equation_says_in_a_parabola(e, magic):
     fit = np.polyfit(np.arange(3.5, 6.0) - e, u.ravel(), 2)
     assert fit[2] == pytest.approx(slip, abs=1e-9 * u.max())
     assert abs(fit[2] - slip - force / (8 * k)) > 1e-3 * u.max()  # the twin: off by what a mean is less than a centre
+
+
+@pytest.mark.parametrize("width", [1.4, 2.0, 3.0, 4.0, 6.0])
+def test_a_narrow_wall_lets_a_channel_carry_what_it_should_at_any_relaxation_time(width):
+    # Cells of fluid hold 1/(2 w²) too much, which rows of the wall take back by a mean of t (t - y) of 1/24; s = 0.2
+    # makes that mean up to a quarter larger (test_coupling_operators.py).
+    found = [mean_flux(width, tau, MAGIC_MIDWAY_WALL, wall="narrow-wall")[0] for tau in (0.52, 0.8, 1.5)]
+    assert np.abs(np.subtract(found, 1)).max() < 0.25 / (2 * width**2)
+    # No term has the relaxation time in it: round-off of a solve, whose numbers are up to 1/k = 50 times as large.
+    assert np.ptp(found) < 1e-9
+    # The check that must fail: the exact wall lets several times as much too much through.
+    assert mean_flux(width, 0.8, MAGIC_MIDWAY_WALL)[0] - 1 > 4 * 0.25 / (2 * width**2)

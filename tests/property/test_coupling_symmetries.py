@@ -6,14 +6,14 @@ import pytest
 
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting.choose import WEIGHTINGS
+from porescale.coupling.weighting.choose import fitting_weights
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 
 EPS = np.finfo(float).eps
 N = 20
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
-PAIRS = [(s, w) for s in SOLID_OPERATORS for w in WEIGHTINGS if (s == "exact-wall") == (w == "wall")]
+PAIRS = [(s, w) for s in SOLID_OPERATORS for w in fitting_weights(s)]
 CASES = [
     *[(s, w, "trt", False) for s, w in PAIRS], ("exact-wall", "wall", "central", True),
     *[pytest.param("exact-wall", "wall", name, False, marks=pytest.mark.slow) for name in ("mrt", "bgk", "central")],

@@ -7,7 +7,7 @@ from porescale.builders.build import build
 from porescale.builders.checks.polygons_in_fluid import too_few_cells, widths
 from porescale.builders.derive import derive
 from porescale.common.core.errors import InputError
-from tests.reference.scenes import column, grain
+from tests.reference.scenes import column, grain, water
 
 SQUARE = {"sides": 4, "diameter": 0.0014, "thickness": 2e-5, "at": [[0.004, 0.005]], "angle": [0.3]}
 WATER = {"gate": None, "grains__packing": None, "grains__hydraulic_radius_ratio": 1, "domain__top": "wall"}
@@ -21,6 +21,10 @@ def faults(*polygons, **changes):
     with pytest.raises(InputError) as caught:
         derive(wet(*polygons, **changes))
     return " ".join(f"{fault.key} {fault.problem} {fault.repair}" for fault in caught.value.faults)
+
+
+def warned(*polygons, **changes):
+    return " ".join(derive(wet(*polygons, **changes)).warnings)
 
 
 def test_a_polygon_sinks_beside_a_grain_and_goes_on_bit_for_bit():
@@ -93,8 +97,22 @@ def test_what_discs_alone_have_is_refused_of_polygons_with_the_reason():
     assert "fluid.rim softens discs alone" in faults(SQUARE, fluid__rim="soft")
     assert "fluid.rim is soft with 'central'" in faults(SQUARE, fluid__operator="central")
     derive(wet(SQUARE, fluid__operator="central", fluid__rim="sharp"))
-    # The twin: none of it is refused where there is no polygon.
-    derive(column(**WATER | beside | {"fluid__rim": "soft", "lubrication": {}}))
+    assert " is of the discs alone: the fluid sees polygons at their outline" in warned(SQUARE, **beside)
+    # The twin: none of it is refused or said where there is no polygon.
+    alone = derive(column(**WATER | beside | {"fluid__rim": "soft", "lubrication": {}}))
+    assert not [line for line in alone.warnings if "alone" in line or "film" in line or "rim" in line]
+
+
+def test_a_film_or_a_rim_that_a_body_has_not_is_said():
+    grains = {"grains__grain": [grain(0.008, 0.005)], "lubrication": {}}
+    block = {"rectangle": [{"lower": [0.009, 0.0], "upper": [0.0104, 0.004]}]}
+    said = " ".join(derive(column(**WATER | grains | block)).warnings)
+    assert "[lubrication] adds no film at [[rectangle]]" in said
+    assert "adds no film at [gate]" in " ".join(derive(column(lubrication={})).warnings)
+    assert "is not used: rims of discs" in " ".join(derive(water(**block, fluid__rim="soft")).warnings)
+    # The twins: without what asks for it nothing is said.
+    assert "film" not in " ".join(derive(column(**WATER | {**grains, "lubrication": None} | block)).warnings)
+    assert "rim" not in " ".join(derive(water(**block)).warnings)
 
 
 def test_a_plate_of_one_cell_is_warned_of():

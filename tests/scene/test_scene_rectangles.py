@@ -133,6 +133,67 @@ def test_what_meets_when_follows_from_straight_motion():
     assert nearest(square, passing, np.array([-2.0, 1.5]), 0.0, 1.0) == pytest.approx(1.25**0.5, abs=1e-12)
 
 
+def test_a_ramp_is_even_acceleration_and_slowing_to_rest():
+    it = Rectangle(lower=(0, 0), upper=(1, 1), velocity=(2.0, -1.0), starts_at=1.0, stops_at=6.0, ramp=2.0)
+    # 2 m/s after 2 s: 2 m; even for one second: 2 m; to rest in 2 s: 2 m.  Halves of a ramp are 1/4 and 3/4 of it.
+    times = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 9.0)
+    assert [it.travelled(t)[0] for t in times] == pytest.approx([0.0, 0.5, 2.0, 4.0, 5.5, 6.0, 6.0], rel=1e-14)
+    assert it.travelled(5.0)[1] == pytest.approx(-2.75, rel=1e-14)
+    for_ever = Rectangle(lower=(0, 0), upper=(1, 1), velocity=(2.0, 0.0), ramp=2.0)
+    assert for_ever.travelled(10.0)[0] == pytest.approx(18.0, rel=1e-14)
+    # Two that meet in the ramp of one: after 1/2 t²/2 = 1 m; even parts of an eighth of it err by 2 * 2/(8 * 64) m.
+    other = Body((2.0, 0.0), (3.0, 1.0))
+    assert first_meeting(for_ever, other, 10.0, 0.0) == pytest.approx(2**0.5, abs=2 * 2 / 512 / 2**0.5)
+    (line,) = refusals(lambda: derive(tank({**BLOCK, "velocity": [0.1, 0], "stops_at": 1e-3, "ramp": 6e-4})))
+    assert line.startswith(
+        "rectangle[0].ramp = 0.0006 s: does not fit twice between starts_at and stops_at (allowed: <= 0.0005"
+    )
+
+
+def test_a_piston_that_starts_at_once_rings_and_a_ramp_of_the_length_that_is_said_does_not():
+    piston = {"lower": [-0.004, -0.001], "upper": [0.002, 0.009], "velocity": [0.01, 0.0]}
+    channel = {
+        "fluid__body_force": None, "gravity": [0, 0], "domain__left": "wall", "domain__top": "wall",
+        "domain__right": {"kind": "pressure", "pressure": 0.0}, "time__end": 0.12,
+    }  # fmt: skip
+
+    def flows(steps, **more):
+        """Mean velocity in front over that of the piston, after each step; what is said of it."""
+        scene = water(**channel, rectangle=[{**piston, **more}])
+        simulation, found = build(scene), []
+        for _ in range(steps):
+            simulation.advance(1)
+            found.append(simulation.fluid.fields()[1][:, 35:45].mean() * simulation.coupled.scales.velocity / 0.01)
+        return np.array(found), [line for line in derive(scene).warnings if "ramp" in line]
+
+    at_once, (said,) = flows(420)
+    # rho c V: 1000 * 0.0002/4e-5/sqrt 3 * 0.01 = 29 Pa;  w = pi c/2L = 378/s;  T = 20/w
+    assert "a pulse of 29 Pa goes to and fro at 60.1 Hz" in said
+    assert "swing by 100 % of what it displaces" in said
+    assert "rectangle.ramp = 0.053 s" in said
+    # All of it: twice the flow half a period after the start, less what walls have taken by then (exp(-0.07) of it)
+    # and what the front is spread; and hardly any flow a period after it.
+    assert 1.8 < at_once.max() < 2.0
+    assert at_once[300:].min() < 0.4
+    ramped, silent = flows(2000, ramp=0.053)  # the ramp has 1325 steps
+    assert not silent
+    assert np.abs(ramped[1400:] - 1).max() < 0.1
+    # The check that must fail: a ramp of a fifth of it leaves five times as much, 2/wT = 53 %.
+    _, (said,) = flows(1, ramp=0.01)
+    assert "starts in 0.01 s" in said
+    assert "swing by 53 %" in said
+
+
+def test_a_gate_that_rises_along_itself_and_a_thick_liquid_do_not_ring():
+    assert not [it for it in derive(tank(GATE)).warnings if "ramp" in it]
+    piston = {"lower": [-0.004, -0.001], "upper": [0.002, 0.009], "velocity": [0.01, 0.0]}
+    given = {"fluid__body_force": None, "domain__left": "wall", "time__end": 0.9, "rectangle": [piston]}
+    out = {"domain__right": {"kind": "pressure", "pressure": 0.0}}
+    assert [it for it in derive(water(**given | out | {"time__end": 0.1})).warnings if "ramp" in it]
+    thick = {"fluid__viscosity": 1e-4}  # damped at sqrt(nu w/2)/H = 17/s, long before half of 0.9 s
+    assert not [it for it in derive(water(**given | out | thick)).warnings if "ramp" in it]
+
+
 def test_a_rectangle_goes_as_its_section_says():
     it = Rectangle(lower=(0, 0), upper=(1, 1), velocity=(2.0, -1.0), starts_at=1.0, stops_at=3.0)
     assert [it.travelled(t) for t in (0.0, 1.0, 1.5, 3.0, 9.0)] == [(0, 0), (0, 0), (1, -0.5), (4, -2), (4, -2)]

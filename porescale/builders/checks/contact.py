@@ -1,4 +1,4 @@
-"""Contact laws: every number belongs to its law, and nothing is missing."""
+"""Contact laws: every number belongs to its law, nothing is missing, and what has no effect is said."""
 
 from porescale.builders.initial.contact_laws import law_class, merged
 from porescale.common.core.errors import Fault
@@ -30,6 +30,30 @@ def check_contact(scene: Scene) -> list[Fault]:
     for key, section in sections[1 : 1 + len(scene.material)] or sections[:1]:
         faults += _check_complete(key, merged(contact, section), contact)
     return faults
+
+
+def material_doubts(scene: Scene) -> list[str]:
+    """Warnings of bodies that name no material where one has to be guessed, and of a grains.density without effect."""
+    if not (scene.material and scene.grains):
+        return []
+    grains, first = scene.grains, scene.material[0]
+    named = [(f"grains.grain[{k}]", it.material) for k, it in enumerate(grains.grain)]
+    named += [("grains.packing", grains.packing.material)] if grains.packing else []
+    for kind, bodies in (("clump", scene.clump), ("segment", scene.segment), ("polygon", scene.polygon)):
+        named += [(f"{kind}[{k}]", it.material) for k, it in enumerate(bodies)]
+    none = [key for key, name in named if not name]
+    other = first.density is not None and first.density != grains.density
+    if none and (len(scene.material) > 1 or other):
+        shown = ", ".join(none[:3]) + (f" and {len(none) - 3} more" if len(none) > 3 else "")
+        heavy = f", of {first.density:g} kg/m^3 instead of grains.density = {grains.density:g}" if other else ""
+        return [f"no material is named by {shown}: the first is taken, {first.name!r}{heavy}; name it with material"]
+    densities = {it.density for it in scene.material if it.name in dict.fromkeys(name for _, name in named)}
+    if densities and None not in densities and grains.density not in densities:
+        return [
+            f"grains.density = {grains.density:g} kg/m^3 has no effect on masses: every material that is named has a"
+            " density of its own; make it one of these"
+        ]
+    return []
 
 
 def _check_names(scene: Scene, contact: Contact) -> list[Fault]:

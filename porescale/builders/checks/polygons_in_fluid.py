@@ -1,7 +1,4 @@
-"""Polygons in fluid, as scenes have them: convex, resolved by the cells, without films, soft rims or a ratio of radii.
-
-Why is in docs/theory/shapes.md.
-"""
+"""Polygons in fluid, as scenes have them: convex, and resolved by the cells."""
 
 from __future__ import annotations
 
@@ -11,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from porescale.builders.initial.fluid_options import has_soft_rim
+from porescale.builders.checks.discs_alone import check_beside_polygons
 from porescale.common.core.errors import Fault, InputError
 from porescale.coupling.coverage.polygon import convex, least_width
 
@@ -46,26 +43,7 @@ def check_in_fluid(scene: Scene, frames: Sequence[str]) -> list[Fault]:
             convex(each.points, f"polygon[{k}]")
         except InputError as error:
             faults += error.faults
-    return faults + (_what_discs_alone_have(scene) if scene.polygon else [])
-
-
-def _what_discs_alone_have(scene: Scene) -> list[Fault]:
-    """The faults of films, soft rims and a hydraulic radius beside polygons, which have none of them."""
-    faults, grains = [], scene.grains
-    if scene.lubrication:
-        problem = "has no films between polygons: what the lattice lacks was measured between round surfaces"
-        faults.append(Fault("lubrication", None, problem, repair="leave it out, polygon.thickness keeps a gap open"))
-    if scene.fluid and has_soft_rim(scene.fluid):
-        problem = f"is soft with {scene.fluid.operator!r}" if scene.fluid.rim is None else "softens discs alone"
-        problem += ": how far a rim is drawn in follows the radius, which a polygon has not"
-        faults.append(Fault("fluid.rim", scene.fluid.rim, problem, "", "'sharp'"))
-    discs = grains and (grains.packing or grains.grain or grains.circles or scene.clump)
-    if grains and (grains.hydraulic_radius_ratio or 1.0) < 1.0 and not discs:
-        problem = "is of discs: the fluid sees a polygon's outline, without the thickness of its sides"
-        repair = "choose polygon.thickness: in the fluid sides that touch stand two of them apart"
-        key = "grains.hydraulic_radius_ratio"
-        faults.append(Fault(key, grains.hydraulic_radius_ratio, problem, "", "1", repair))
-    return faults
+    return faults + (check_beside_polygons(scene) if scene.polygon else [])
 
 
 def widths(placed: Sequence[Placed]) -> list[float]:

@@ -28,6 +28,8 @@ EDGE = 1e-9
 TOUCH = 1e-3
 """Share of a radius by which a disc may start in a rectangle."""
 NEVER = float("inf")
+PARTS = 8
+"""Of a ramp, in each of which motion is taken for even."""
 HALVINGS = 60
 """Of an interval in which a smallest distance is looked for: to the last bit of its ends."""
 
@@ -42,10 +44,11 @@ class Body(NamedTuple):
     velocity: Pair = (0.0, 0.0)
     starts_at: float = 0.0
     stops_at: float | None = None
+    ramp: float = 0.0
 
     def travelled(self, time: float) -> Pair:
         """How far it has gone, m."""
-        return travelled(self.velocity, self.starts_at, self.stops_at, time)
+        return travelled(self.velocity, self.starts_at, self.stops_at, time, self.ramp)
 
 
 def check_rectangles(
@@ -93,8 +96,15 @@ def first_meeting(one: Rectangle | Body, other: Rectangle | Body, end: float, sl
 
 
 def phases(one: Rectangle | Body, other: Rectangle | Body, end: float) -> list[Pair]:
-    """The spans of time (s) in which both move evenly; one of no length where ``end`` is 0."""
+    """The spans of time (s) in which both move evenly; one of no length where ``end`` is 0.
+
+    A ramp is cut into ``PARTS``: within each the way is even to velocity times ramp over 8 PARTS².
+    """
     given = [time for it in (one, other) for time in (it.starts_at, it.stops_at) if time is not None]
+    for it in (one, other):
+        cuts = [it.ramp * k / PARTS for k in range(1, PARTS + 1)] if it.ramp else []
+        given += [it.starts_at + cut for cut in cuts]
+        given += [it.stops_at - cut for cut in cuts if it.stops_at is not None]
     times = sorted({0.0, end, *(time for time in given if 0.0 < time < end)})
     return list(itertools.pairwise(times)) or [(0.0, 0.0)]
 
@@ -136,7 +146,7 @@ def _check_box(scene: Scene, faults: list[Fault]) -> None:
         if all(it.upper[a] - it.lower[a] >= size[a] - slack for a in range(2)):
             # Where it must have gone to, for its edges to lie beyond those of the box.
             gone = Body((size[0] - it.upper[0], size[1] - it.upper[1]), (-it.lower[0], -it.lower[1]))
-            way = Body((0.0, 0.0), (0.0, 0.0), it.velocity, it.starts_at, it.stops_at)
+            way = Body((0.0, 0.0), (0.0, 0.0), it.velocity, it.starts_at, it.stops_at, it.ramp)
             time = first_meeting(way, gone, end, -slack)
             if time < NEVER:
                 problem = f"fills the whole box{f' after {time:.4g} s' if time else ''}"

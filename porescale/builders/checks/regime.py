@@ -23,7 +23,7 @@ from porescale.builders.checks.limits import (
     thin,
 )
 from porescale.builders.checks.own_laws import inflow_peak, largest_force
-from porescale.builders.checks.sound import check_gate, check_sound
+from porescale.builders.checks.sound import check_gate, check_pistons, check_sound
 from porescale.builders.initial.clumps import least_density
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.fluid_options import collision_options, weight_of
@@ -32,6 +32,7 @@ from porescale.builders.initial.placed import by_hand
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
+from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.dem.sanity import WORST_OF_TRAVELLING_CORNERS, WORST_TRAVEL
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.scales import Scales
@@ -183,10 +184,11 @@ def check_regime(
     Adds refusals to ``faults`` and doubts to ``warnings``, each with its repair.
     """
     _check_mach(scales, speed, faults, warnings)
-    _check_operator(scene, scales, speed, sizes, warnings)
+    _check_operator(scene, scales, speed, sizes, faults, warnings)
     _check_thickness(scene.rectangle, scales, warnings)
     check_sound(scene, scales, warnings)
     check_gate(scene, scales, warnings)
+    check_pistons(scene, scales, warnings)
     check_flows(scene, scales, sizes is not None, faults, warnings)
     if scene.ring and scene.ring.diameter < RING_CELLS * scales.spacing:
         repair = f"a spacing of {scene.ring.diameter / RING_CELLS:.2g} m gives it so many"
@@ -222,7 +224,9 @@ def check_regime(
     return _check_pore_pressure(weight, column_height(packing, scene.gravity), scales, faults, warnings)
 
 
-def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, warnings: list[str]) -> None:
+def _check_operator(
+    scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, faults: list[Fault], warnings: list[str]
+) -> None:
     """Where the operators that the scene names oscillate, diverge or do not suit the scene."""
     assert scene.fluid
     fluid, lid = scene.fluid, any(side.speed for side in scene.domain.sides.values())
@@ -239,7 +243,17 @@ def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | N
     default = type(fluid).model_fields["solid_operator"].default
     if sizes is None and not (scene.rectangle or scene.ring) and (fluid.solid_operator != default or fluid.weighting):
         warnings.append("fluid.solid_operator and fluid.weighting are not used: there is nothing solid in the fluid")
-    if fluid.solid_operator in HELD_ONLY and scene.grains is not None:
+    made_for = SOLID_OPERATORS[fluid.solid_operator].magic
+    if made_for is not None and fluid.magic != made_for:
+        warnings.append(
+            f"fluid.magic = {fluid.magic:g}: the solid operator {fluid.solid_operator!r} is made for {made_for:g}, and"
+            " drag in dense beds is some 10 % off with another; leave it out"
+        )
+    if SOLID_OPERATORS[fluid.solid_operator].free_refused and scene.grains is not None:
+        problem = "is for bodies that are held, [[disc]], [[rectangle]] and [ring]: free grains run away with it"
+        others = " or ".join(repr(name) for name, row in SOLID_OPERATORS.items() if not row.held_only)
+        faults.append(Fault("fluid.solid_operator", fluid.solid_operator, problem, "", others, "take one of these"))
+    elif fluid.solid_operator in HELD_ONLY and scene.grains is not None:
         warnings.append(
             f"fluid.solid_operator = {fluid.solid_operator!r}: free grains ran away with it in every trial; it is for"
             " held discs"

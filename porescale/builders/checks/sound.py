@@ -1,8 +1,9 @@
-"""What compressibility does to a scene beside its Mach number: motion that sound does not keep up with, and the suction
-below a gate that rises along grains."""
+"""What compressibility does to a scene beside its Mach number: motion that sound does not keep up with, pistons that
+start at once, and the suction below a gate that rises along grains."""
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from porescale.builders.checks.limits import DENSITY_WARN, SOUND_WARN
 from porescale.builders.checks.own_laws import force_rate, inflow_rate
@@ -19,6 +20,22 @@ GATE_EDGE = 2.6
 """Suction over mu V/h at the edge of a gate that rises in plain water: 2.6 to 3.1 at V h/nu below 1."""
 GATE_HEAD = 0.75
 """What is added to it over rho V²: 0.75 at V h/nu of 2 to 10."""
+
+
+SWING = 0.1
+"""Share of the displaced flow by which a piston's start may still ring halfway through its motion."""
+RAMP = 2 / SWING
+"""Ramp, over 1/w of the ringing, that keeps it below."""
+
+
+class Ringing(NamedTuple):
+    """axis : along which a piston moves;  rate : w, rad/s;  step : share of the flow that swings at first;  left :
+    halfway through the motion."""
+
+    axis: int
+    rate: float
+    step: float
+    left: float
 
 
 def check_sound(scene: Scene, scales: Scales, warnings: list[str]) -> None:
@@ -68,6 +85,50 @@ def gate_suction(scene: Scene, scales: Scales, speed: float) -> float:
     ratio, diameter = scene.grains.hydraulic_radius_ratio or 1.0, scene.grains.packing.diameter
     film = max(0.5 * (1 - ratio) * diameter, 0.25 * scales.spacing)  # thinner ones are no film in the lattice
     return float(max(drawn, GATE_FILM * viscosity * speed * math.sqrt(0.5 * ratio * diameter) / film**1.5))
+
+
+def check_pistons(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Warn of rectangles that fill half of a channel or more and start so fast that what they push rings."""
+    for k, it in enumerate(scene.rectangle):
+        found = ringing(scene, scales, k)
+        if not found or it.ramp >= RAMP / found.rate:
+            continue
+        axis = found.axis
+        press = scales.density * scales.sound_speed * abs(it.velocity[axis])
+        warnings.append(
+            f"rectangle {k} starts {f'in {it.ramp:g} s' if it.ramp else 'at once'}: a pulse of"
+            f" {found.step * press:.2g} Pa goes to and fro at {found.rate / (2 * math.pi):.3g} Hz, and flows swing by"
+            f" {100 * found.step:.0f} % of what it displaces, by {100 * found.left:.0f} % halfway through its motion;"
+            f" rectangle.ramp = {RAMP / found.rate:.2g} s keeps them below {100 * SWING:g} %"
+        )
+
+
+def ringing(scene: Scene, scales: Scales, k: int) -> Ringing | None:
+    """How rectangle ``k`` rings the box; None where it does not for long.
+
+    A plane face that starts at V sends a step of rho c V ahead.  Between it and a side that lets fluid through flows
+    then swing about V by all of it with w = pi c/2L, between closed ones with pi c/L.  Walls damp by their layers, at
+    the rate sqrt(nu w/2)/H (Kirchhoff 1868; without heat), the fluid itself at about nu w²/c².  L is that of the box: a
+    piston far inside rings faster.  A ramp of T leaves |sin(wT/2)/(wT/2)| of it, at most 2/wT.
+    """
+    it, d = scene.rectangle[k], scene.domain
+    axis = 0 if abs(it.velocity[0]) >= abs(it.velocity[1]) else 1
+    size = d.width, d.height
+    across = 1 - axis
+    fills = min(it.upper[across], size[across]) - max(it.lower[across], 0.0)
+    if not it.fastest or fills < 0.5 * size[across] or d.periodic[axis] or it.starts_at >= scene.time.end:
+        return None
+    ahead = ("left", "right") if axis == 0 else ("bottom", "top")
+    passes = any(d.sides[name].boundary.passes for name in ahead)
+    rate = math.pi * scales.sound_speed / size[axis] * (0.5 if passes else 1.0)
+    beside = ("bottom", "top") if axis == 0 else ("left", "right")
+    walls = 0.5 * sum(d.sides[name].boundary.no_slip for name in beside)
+    damping = walls * math.sqrt(0.5 * scales.viscosity * rate) / size[across]
+    damping += scales.viscosity * (rate / scales.sound_speed) ** 2
+    until = scene.time.end if it.stops_at is None else min(it.stops_at, scene.time.end)
+    step = min(1.0, 2 / (rate * it.ramp)) if it.ramp else 1.0
+    left = step * math.exp(-0.5 * damping * (until - it.starts_at))
+    return Ringing(axis, rate, step, left) if left > SWING else None
 
 
 def check_gate(scene: Scene, scales: Scales, warnings: list[str]) -> None:

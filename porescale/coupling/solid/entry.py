@@ -31,8 +31,9 @@ class SolidOperator:
     What follows from it:  radius_shift : times the magic parameter, cells², over the radius: what a disc's radius lacks
     in the lattice;  half_step_correction : whether full cells are given a velocity whose time-centred value is the
     body's (load.py);  force_everywhere : whether the body force acts in the whole of a cell;  held_only : whether free
-    discs run away with it;  longest_relaxation_time : up to which drag is right;  holds : by weight;  order : place in
-    lists, the recommended one first.
+    discs run away with it;  longest_relaxation_time : up to which drag is right;  magic : the one magic parameter that
+    it is made for, None for any;  free_refused : whether scenes with free grains are refused with it, and the map of
+    stability leaves it out;  holds : by weight;  order : place in lists, the recommended one first.
     """
 
     name: str
@@ -46,5 +47,7 @@ class SolidOperator:
     force_everywhere: bool = False
     held_only: bool = False
     longest_relaxation_time: float = 1.5
+    magic: float | None = None
+    free_refused: bool = False
     holds: Mapping[str, Holds] = field(default_factory=dict)
     order: int = 100

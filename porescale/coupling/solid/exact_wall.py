@@ -29,6 +29,7 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
+from porescale.common.compiled.simd import fma
 from porescale.coupling.coverage.soft_rim import SLIP_FACTOR
 from porescale.coupling.solid.entry import Holds, SolidOperator
 from porescale.coupling.solid.law import (
@@ -79,7 +80,7 @@ def _soft(solid):
 
 
 @force_share.of(ExactWall, SoftWall)
-def _whole(b, solid):
+def whole_cell(b, solid):
     """``force_share``: 1, the body force acts in the whole cell."""
     return numbers(b).one
 
@@ -124,13 +125,13 @@ def _missing_momentum(cell, kept, rho, jx, jy):
     j with h."""
     fx, fy = jx + cell.hx, jy + cell.hy
     return (
-        cell.e * fx + cell.b * (rho * cell.vx - jx) - kept * (jx - cell.hx),
-        cell.e * fy + cell.b * (rho * cell.vy - jy) - kept * (jy - cell.hy),
+        fma(-kept, jx - cell.hx, fma(cell.e, fx, cell.b * fma(rho, cell.vx, -jx))),
+        fma(-kept, jy - cell.hy, fma(cell.e, fy, cell.b * fma(rho, cell.vy, -jy))),
     )
 
 
 @blend.of(ExactWall, SoftWall)
-def _blend(f, g, cell, m, rate, solid):
+def blend_wall(f, g, cell, m, rate, solid):
     """Populations after collision, where each part relaxes with its own rate."""
     one = numbers(cell.e).one
     rho = one + m.d
@@ -140,7 +141,7 @@ def _blend(f, g, cell, m, rate, solid):
 
 
 @collide_with_solid.of(ExactWall, SoftWall)
-def _collide_with_solid(f, cell, shares, m, rate, law, solid):
+def collide_with_wall(f, cell, shares, m, rate, law, solid):
     """The same in one with the fluid operator."""
     plus, kept = shares
     one = numbers(cell.e).one
@@ -149,7 +150,7 @@ def _collide_with_solid(f, cell, shares, m, rate, law, solid):
 
 
 @momentum_to_solid.of(ExactWall, SoftWall)
-def _momentum_to_solid(cell, rho, jx, jy, rate, solid):
+def momentum_to_wall(cell, rho, jx, jy, rate, solid):
     """b (j + h - rho v), less the body force on the solid part."""
     b, hx, hy = cell.b, cell.hx, cell.hy
     two_e = numbers(cell.e).two * cell.e

@@ -56,6 +56,34 @@ def wall_rates(e, tau, third_order):
     return 1 / (0.5 + lam), np.where(e == 1, 0.0, even)
 
 
+def narrow_parts(e, k, magic=3 / 16):
+    """y and X of a narrow wall, and g, from the docstring of porescale/coupling/solid/narrow_wall.py; 0 < e < 1."""
+    t, s, onset = 1 - e, 0.2, 0.05
+    g = 8 / 3 * magic * (1 + s) / (1 + 3 * s) * onset / (e * (e + onset))
+    return t**3 * (1 + s) / (t**2 + s), 0.75 * t / k * (1 + g), g
+
+
+def narrow_weight(e, tau):
+    """b of the narrow wall: 1/b - 1/2 = y X."""
+    if e in (0.0, 1.0):
+        return 2 * e
+    y, x, _ = narrow_parts(e, tau - 0.5)
+    return 1 / (0.5 + y * x)
+
+
+def narrow_rates(e, tau, third_order):
+    """Rates s_q and s_e of the narrow wall at magic parameter 3/16; e a number."""
+    if e in (0.0, 1.0):
+        return (2.0, 0.0) if e else (third_order, 1 / tau)
+    k, t = tau - 0.5, 1 - e
+    y, x, g = narrow_parts(e, k)
+    return 1 / (0.5 + (1 - y) * x / 2), 1 / (0.5 + k / t * g / (1 + g))
+
+
+WALLS = {"exact-wall": (wall_weight, wall_rates), "narrow-wall": (narrow_weight, narrow_rates)}
+"""Weight and rates of the operators of which each part relaxes with a rate of its own."""
+
+
 def halves(f):
     """Even half, momentum's share of the odd one, and the rest of it, of populations (9, ...)."""
     even, odd = (f + f[BACK]) / 2, (f - f[BACK]) / 2
@@ -64,12 +92,13 @@ def halves(f):
     return even, carried, odd - carried
 
 
-def exact_wall(f, g, rho, force, v, e, tau, third_order):
+def exact_wall(f, g, rho, force, v, e, tau, third_order, name="exact-wall"):
     """Populations after the step; g: collided fluid;  v, force (2, ...), in the whole cell;  e and rho (...)."""
     j = np.tensordot(DIRECTIONS, f, ((0,), (0,)))
-    third, even_rate = wall_rates(e, tau, third_order)
+    weight, rates = WALLS[name]
+    third, even_rate = rates(e, tau, third_order)
     even, _, rest = halves(f)
-    after = j + force + wall_weight(e, tau) * (rho * v - j - force / 2)
+    after = j + force + weight(e, tau) * (rho * v - j - force / 2)
     return (
         even
         + even_rate * tau * (halves(g)[0] - even)

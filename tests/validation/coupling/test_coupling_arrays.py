@@ -110,6 +110,15 @@ def test_the_parameter_of_plane_walls_fails_on_dense_arrays():
     assert found.error > 1.3 * tolerance("coupling.dense_square_arrays_at_this_parameter")
 
 
+def test_exact_walls_fail_on_gaps_below_two_cells_and_printed_operators_on_what_looser_arrays_ask_of_held_discs():
+    found = lab.square((0.6,), (0.8,), np.inf, count=2)
+    assert found.error > 5 * tolerance("coupling.dense_square_arrays_of_held_discs")
+    found = lab.square((0.4,), (0.8,), np.inf, count=1, method=PRINTED)
+    assert found.error > 3 * tolerance("coupling.looser_arrays_of_held_discs")
+    found = lab.hexagonal(lab.DENSE_HEXAGONAL, np.inf, method=PRINTED)
+    assert found.error > 2 * tolerance("coupling.dense_hexagonal_arrays_of_held_discs")
+
+
 def test_near_one_half_too_the_shift_is_needed(monkeypatch):
     without_shift(monkeypatch)
     found = lab.square((0.3,), (0.52,), np.inf, count=1)
