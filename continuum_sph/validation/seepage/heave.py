@@ -180,7 +180,8 @@ class Heave:
                 break
             if rise > least:
                 rows.append((time, rise))
-        curve = np.polyfit(*np.array(rows).T, 2)
+        times, rises = np.array(rows).T
+        curve = np.polyfit(times, rises, 2)
         return self.first + self.rate * (-0.5 * float(curve[1] / curve[0]) - self.settle)
 
     def stands(self, head: float, most: float, seconds: float = 2.2) -> bool:
