@@ -1,7 +1,7 @@
 """Convergence of soil: the friction of an endless layer that slides, from a strewn lattice, at several spacings.
 
-Noise of stress takes friction away where each particle yields by its own mean stress, the more the finer the soil is, if
-diffusion leaves it there; by that of its surroundings most of the noise cancels.
+Noise of stress takes friction away where each particle yields by its own mean stress, as much as diffusion leaves;
+by that of its surroundings most of it cancels.
 """
 
 from functools import partial
