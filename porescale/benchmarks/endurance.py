@@ -15,8 +15,6 @@ EPS = float(np.finfo(float).eps)
 WEIGHT = (0.0, -2e-4)
 """Acceleration, cells per step²."""
 CELLS = (44, 56)
-STIRRED = 5e-3
-"""Acceleration that keeps nothing at rest: what a heap under it does is no heap."""
 
 
 def heap(acceleration: tuple[float, float] = WEIGHT) -> Coupled:

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from porescale.benchmarks.minimal_dem import PlainDiscs
 from porescale.benchmarks.minimal_lbm import PlainWater, plain_cells, slots_of
-from porescale.common.compiled.jit import inline, kernel, tree_sum, unchecked_view
+from porescale.common.compiled.jit import inline, kernel, unchecked_view
+from porescale.common.compiled.simd import load_eight, ramp_eight, reduce_add, store_eight
 from porescale.common.core.types import Floats
 from porescale.coupling.coverage.discs import SCRATCH, cover_disc
 from porescale.coupling.coverage.rows import BLOCK, whole_blocks
@@ -23,8 +24,6 @@ from porescale.coupling.solid.exact_wall import ONSET, SMOOTHING
 from porescale.coupling.step import Coupled
 
 Index = NDArray[np.int64]
-
-total = tree_sum(BLOCK)
 
 
 class Covered(NamedTuple):
@@ -86,23 +85,16 @@ def lay(n, y, covered, s, sx, sy):
     w, c = motion[n, 2], turned[n, 2]
     first = (n * highest + y - corner[n, 1]) * width
     for at in range(0, width, BLOCK):
-        x = corner[n, 0] + at + BLOCK
-        e, t, tx, ty = (
-            unchecked_view(fraction, first + at, BLOCK),
-            unchecked_view(s, x, BLOCK),
-            unchecked_view(sx, x, BLOCK),
-            unchecked_view(sy, x, BLOCK),
-        )
-        for i in range(BLOCK):
-            t[i] += e[i]
-            tx[i] += e[i] * (vx + e[i] * cx)
-            ty[i] += e[i] * (vy + w * (at + i) + e[i] * (cy + c * (at + i)))
+        x, e, i = corner[n, 0] + at + BLOCK, load_eight(fraction, first + at), ramp_eight(s) + at
+        store_eight(s, x, load_eight(s, x) + e)
+        store_eight(sx, x, load_eight(sx, x) + e * (vx + e * cx))
+        store_eight(sy, x, load_eight(sy, x) + e * (vy + w * i + e * (cy + c * i)))
 
 
 @inline
-def take(n, y, covered, s, sx, sy, partial, load):
+def take(n, y, covered, s, sx, sy, load):
     """Add what row y does to disc n to load (n, 5): force, torque, mass and inertia that answer.  s, sx, sy: as
-    wet_cells leaves them;  partial: scratch."""
+    wet_cells leaves them."""
     centre, motion, turned, corner = covered.centre, covered.motion, covered.turned, covered.corner
     highest, width, fraction = covered.highest, covered.width, covered.fraction
     rx, ry = corner[n, 0] + 0.5 - centre[n, 0], y + 0.5 - centre[n, 1]
@@ -110,25 +102,16 @@ def take(n, y, covered, s, sx, sy, partial, load):
     w, c = motion[n, 2], turned[n, 2]
     first = (n * highest + y - corner[n, 1]) * width
     for at in range(0, width, BLOCK):
-        x = corner[n, 0] + at + BLOCK
-        e, rho, jx, jy = (
-            unchecked_view(fraction, first + at, BLOCK),
-            unchecked_view(s, x, BLOCK),
-            unchecked_view(sx, x, BLOCK),
-            unchecked_view(sy, x, BLOCK),
-        )
-        for i in range(BLOCK):
-            arm = rx + (at + i)
-            gx = e[i] * (jx[i] - rho[i] * (vx + e[i] * cx))
-            gy = e[i] * (jy[i] - rho[i] * (motion[n, 1] + w * arm + e[i] * (turned[n, 1] + c * arm)))
-            m = e[i] * rho[i]
-            partial[i] = gx
-            partial[BLOCK + i] = gy
-            partial[2 * BLOCK + i] = arm * gy - ry * gx
-            partial[3 * BLOCK + i] = m
-            partial[4 * BLOCK + i] = m * (arm * arm + ry * ry)
-        for q in range(5):
-            load[n, q] += total(partial, q * BLOCK)
+        x, e, arm = corner[n, 0] + at + BLOCK, load_eight(fraction, first + at), ramp_eight(s) + (rx + at)
+        rho = load_eight(s, x)
+        gx = e * (load_eight(sx, x) - rho * (vx + e * cx))
+        gy = e * (load_eight(sy, x) - rho * (motion[n, 1] + w * arm + e * (turned[n, 1] + c * arm)))
+        m = e * rho
+        load[n, 0] += reduce_add(gx)
+        load[n, 1] += reduce_add(gy)
+        load[n, 2] += reduce_add(arm * gy - ry * gx)
+        load[n, 3] += reduce_add(m)
+        load[n, 4] += reduce_add(m * (arm * arm + ry * ry))
 
 
 @inline
@@ -200,11 +183,10 @@ def cut(slots, first, count):
 
 
 @kernel
-def wet_rows(f, nx, parity, even, odd, covered, sums, spare, partial, load):
+def wet_rows(f, nx, parity, even, odd, covered, sums, spare, load):
     """Collide and stream all cells: overwrites f (9, ny + 2, nx + 2 or more) and load (n, 5), see ``take``.
 
-    even, odd: rates;  sums (3, BLOCK + nx + more): zero before and after;  spare (4, nx) and partial
-    (5 * BLOCK,): scratch.
+    even, odd: rates;  sums (3, BLOCK + nx + more): zero before and after;  spare (4, nx): scratch.
     """
     corner, width, start, listed = covered.corner, covered.width, covered.start, covered.listed
     k, spread = 1.0 / even - 0.5, 1.0 / odd - 0.5
@@ -237,7 +219,7 @@ def wet_rows(f, nx, parity, even, odd, covered, sums, spare, partial, load):
             )
             wet_cells(cut(slots, m, n), here, room, k, spread)
             for entry in range(start[y], start[y + 1]):
-                take(listed[entry], y, covered, s, sx, sy, partial, load)
+                take(listed[entry], y, covered, s, sx, sy, load)
             sums[:, BLOCK + left : BLOCK + right] = 0.0
 
 
@@ -293,7 +275,6 @@ class PlainWet:
         )  # fmt: skip
         self._lines, self._load = np.zeros((SCRATCH, width + BLOCK)), np.zeros((count, 5))
         self._sums, self._spare = np.zeros((3, fluid.nx + width + 2 * BLOCK)), np.zeros((4, fluid.nx))
-        self._partial = np.zeros(5 * BLOCK)
         self._inner = np.column_stack((coupled.inner_velocity, coupled.inner_spin))
         self._inner_mass = np.column_stack((coupled.inner_mass, coupled.inner_inertia))
         mass = scales.density * scales.spacing**2
@@ -309,7 +290,7 @@ class PlainWet:
             )  # fmt: skip
             wet_rows(
                 water.padded, water.nx, water.step % 2, water.even, water.odd, self._covered, self._sums, self._spare,
-                self._partial, self._load,
+                self._load,
             )  # fmt: skip
             water.close()
             answer(

@@ -7,12 +7,9 @@ Each row of a body's patch is summed when the lattice row has been collided and 
 order afterwards, so that loads do not depend on threads.
 """
 
-import numpy as np
-
-from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, prefetch, tree_sum, unchecked_view
+from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, prefetch
+from porescale.common.compiled.simd import choose, fma, load_eight, ramp_eight, reduce_add
 from porescale.coupling.coverage.rows import AHEAD, BLOCK, blocks_inside, motion_of_block, motion_of_row, solid_velocity
-
-total = tree_sum(BLOCK)
 
 
 @inline
@@ -24,8 +21,8 @@ def load_of_cell(e, gained, i, block):
     """
     rho, jx, jy = gained
     vx, vy = solid_velocity(e, i, block)
-    gy = e * (jy - rho * vy)
-    gx = e * (jx - rho * vx)
+    gy = e * fma(-rho, vy, jy)
+    gx = e * fma(-rho, vx, jx)
     m = e * rho
     x, y = block[0] + i, block[1]
     return gx, gy, x * gy - y * gx, m, m * (x * x + y * y)
@@ -34,19 +31,18 @@ def load_of_cell(e, gained, i, block):
 @inline
 def rim_of_cell(e, rho, slip):
     """e (1 - e) times the slip of a cell, and without it; none of what lies beyond the box, where rho is 0."""
-    edge = e * (np.float64(1) - e) * (rho > 0)
+    edge = choose(rho, 0.0, e - e * e, 0.0)
     return edge * slip, edge
 
 
 @inline
-def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, partial, row_load):
+def accumulate_load_row(y, rows, patches, motion, periodic_x, scratch, row_load):
     """Load of one collided row on the bodies in it.
 
     scratch (3, BLOCK + nx + BLOCK): rho, then j along x and y, times B/sum e, as collide_saturated_row leaves them,
-    and zero beyond the box;  the rest as in ``rasterize_row``.  Overwrites partial (5 * BLOCK,), and row_load (n,
-    largest height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of inertia;
-    where rims are soft, with a fourth row of scratch, the slip |u - v|, also the sums of e (1 - e) times slip and of
-    e (1 - e) (partial 7 * BLOCK, row_load 7).
+    and zero beyond the box;  the rest as in ``rasterize_row``.  Overwrites row_load (n, largest height, 5) for these
+    bodies and rows: force along x and y, torque, inside mass and its moment of inertia; where rims are soft, with a
+    fourth row of scratch, the slip |u - v|, also the sums of e (1 - e) times slip and of e (1 - e) (row_load 7).
     """
     nx = scratch.shape[1] - 2 * BLOCK
     density, jx, jy = scratch[0], scratch[1], scratch[2]
@@ -73,31 +69,18 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
             first, last = blocks_inside(base, stride, nx)
             for b in range(first, last, BLOCK):
                 block = motion_of_block(n, b, row, patches, motion)
-                e = unchecked_view(patches.fraction, at + b, BLOCK)
-                x = base + b + BLOCK
-                rho = unchecked_view(density, x, BLOCK)
-                kx = unchecked_view(jx, x, BLOCK)
-                ky = unchecked_view(jy, x, BLOCK)
-                for i in range(BLOCK):
-                    gx, gy, turn, m, inside = load_of_cell(e[i], (rho[i], kx[i], ky[i]), ramp[i], block)
-                    partial[i] = gx
-                    partial[BLOCK + i] = gy
-                    partial[2 * BLOCK + i] = turn
-                    partial[3 * BLOCK + i] = m
-                    partial[4 * BLOCK + i] = inside
-                fx += total(partial, 0)
-                fy += total(partial, BLOCK)
-                tz += total(partial, 2 * BLOCK)
-                mass += total(partial, 3 * BLOCK)
-                inertia += total(partial, 4 * BLOCK)
+                e, i, x = load_eight(patches.fraction, at + b), ramp_eight(density), base + b + BLOCK
+                rho = load_eight(density, x)
+                gx, gy, turn, m, inside = load_of_cell(e, (rho, load_eight(jx, x), load_eight(jy, x)), i, block)
+                fx += reduce_add(gx)
+                fy += reduce_add(gy)
+                tz += reduce_add(turn)
+                mass += reduce_add(m)
+                inertia += reduce_add(inside)
                 if soft:
-                    slip = unchecked_view(scratch[3], x, BLOCK)
-                    for i in range(BLOCK):
-                        slipped, edge = rim_of_cell(e[i], rho[i], slip[i])
-                        partial[5 * BLOCK + i] = slipped
-                        partial[6 * BLOCK + i] = edge
-                    slipping += total(partial, 5 * BLOCK)
-                    rim += total(partial, 6 * BLOCK)
+                    slipped, edge = rim_of_cell(e, rho, load_eight(scratch[3], x))
+                    slipping += reduce_add(slipped)
+                    rim += reduce_add(edge)
             if not periodic_x:
                 break
             base -= nx

@@ -55,8 +55,8 @@ def row_work(nx: int, row_load: NDArray[np.float64], dtype: np.dtype[Any], *, so
     """Scratch of all threads for rows of nx cells, and the given loads of rows."""
     threads = most_threads()
     scratch = aligned_zeros((threads, 4 if soft else 3, BLOCK + nx + BLOCK), dtype)
-    weights = aligned_zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
-    return RowWork(np.arange(BLOCK).astype(dtype), row_load, scratch, weights)
+    weights = aligned_zeros((threads, 4, min(nx, AT_ONCE)), dtype)
+    return RowWork(row_load, scratch, weights)
 
 
 class SaturatedCells:
@@ -302,7 +302,7 @@ class SaturatedCells:
             motion = self._place(centre, velocity, spin)
         self._placed[:] = np.nan  # the patches are none that a step may use again
         work = self._work
-        rasterize(self._rows, self._patches, motion, self.periodic_x, work.ramp, work.scratch, self.covered)
+        rasterize(self._rows, self._patches, motion, self.periodic_x, work.scratch, self.covered)
 
     def weights(self) -> Reals:
         """Weight B of every cell (ny, nx), right after ``cover``."""

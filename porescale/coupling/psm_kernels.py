@@ -44,12 +44,10 @@ STRETCH = 64
 class RowWork(NamedTuple):
     """What rows are worked out with.
 
-    ramp (BLOCK,): 0, 1, 2, ...;  row_load (n, largest height, 5 or 7): load.py;  for each thread scratch (threads, 3 or
-    4, BLOCK + nx + BLOCK): zero before and after;  weights (threads, 5, AT_ONCE or more): scratch, its last row the
-    ``partial`` of load.py.
+    row_load (n, largest height, 5 or 7): load.py;  for each thread scratch (threads, 3 or
+    4, BLOCK + nx + BLOCK): zero before and after;  weights (threads, 4, AT_ONCE or less): scratch.
     """
 
-    ramp: NDArray[np.floating]
     row_load: NDArray[np.float64]
     scratch: NDArray[np.floating]
     weights: NDArray[np.floating]
@@ -168,11 +166,11 @@ def stretches(left, right, n):
 
 
 @inline
-def saturated_row(y, planes, rows, patches, motion, periodic_x, ramp, row_load, scratch, weights, laws):
+def saturated_row(y, planes, rows, patches, motion, periodic_x, row_load, scratch, weights, laws):
     """Row ``y`` of the lattice: rasterize its bodies, collide, take their loads.  Plain fluid outside of what the
     bodies cover.
 
-    planes: the row's nine slots;  ramp, row_load, scratch, weights: one thread's of ``RowWork``;  laws: of weight,
+    planes: the row's nine slots;  row_load, scratch, weights: one thread's of ``RowWork``;  laws: of weight,
     solid and fluid operator.  Overwrites the slots and row_load of the bodies in the row.
     """
     law = laws[2]
@@ -180,7 +178,7 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, ramp, row_load, 
     left = n
     right = n
     if rows.start[y] < rows.start[y + 1]:
-        left, right = rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch)
+        left, right = rasterize_row(y, rows, patches, motion, periodic_x, scratch)
     left, right = stretches(left, right, n)
     for end_of_row in range(2):  # one loop for both ends: compiled once
         first, last = (right, n) if end_of_row else (0, left)
@@ -198,9 +196,7 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, ramp, row_load, 
         for k in range(scratch.shape[0]):
             scratch[k, :BLOCK] = 0
             scratch[k, BLOCK + n :] = 0
-        accumulate_load_row(
-            y, rows, patches, motion, periodic_x, ramp, scratch, weights[4], row_load
-        )  # fmt: skip
+        accumulate_load_row(y, rows, patches, motion, periodic_x, scratch, row_load)
         for k in range(scratch.shape[0]):
             scratch[k, BLOCK + left : BLOCK + right] = 0
 
@@ -214,7 +210,7 @@ def sweep(f, parity, band_order, height, rows, patches, motion, periodic_x, work
     work: ``RowWork`` of all threads;  weighting, solid, law: of weight, solid and fluid operator.
     """
     # By name: what a loop over threads writes into a member of a tuple is lost.
-    ramp, row_load, scratch, weights = work.ramp, work.row_load, work.scratch, work.weights
+    row_load, scratch, weights = work.row_load, work.scratch, work.weights
     n = scratch.shape[2] - 2 * BLOCK
     for turn in prange(band_order.shape[0]):
         band = band_order[turn]
@@ -222,6 +218,6 @@ def sweep(f, parity, band_order, height, rows, patches, motion, periodic_x, work
         for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
             planes = slots(f, n, y + 1, parity)
             saturated_row(
-                y, planes, rows, patches, motion, periodic_x, ramp, row_load, scratch[mine], weights[mine],
+                y, planes, rows, patches, motion, periodic_x, row_load, scratch[mine], weights[mine],
                 (weighting, solid, row_law(y, law)),
             )  # fmt: skip

@@ -11,7 +11,9 @@ from tests.architecture.sources import ROOT, Source, functions, is_kernel, read,
 LONGEST = 400
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
 JIT = "porescale.common.compiled.jit"
-COMPILING = tuple(f"porescale.common.compiled.{name}" for name in ("compiling", "library", "simd_code"))
+COMPILING = tuple(
+    f"porescale.common.compiled.{name}" for name in ("compiling", "library", "simd_code", "simd_rows_code")
+)
 
 
 def undocumented(source: Source) -> Iterator[str]:

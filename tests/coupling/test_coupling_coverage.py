@@ -214,20 +214,19 @@ def test_loads_are_the_same_uncompiled(monkeypatch):
     scratch[:, :, BLOCK:-BLOCK] = random.uniform(-1, 1, (5, 3, 6))
     moved = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
     motion = coverage_rows.Motion(*moved, random.uniform(-0.1, 0.1, (2, 3)), np.zeros(2))
-    rows, patches, partial = wet._rows, wet._patches, np.zeros(5 * BLOCK)
+    rows, patches = wet._rows, wet._patches
     made = []
     for plain in (False, True):
         take, add = load.accumulate_load_row, load.add_rows
         if plain:
             take, add = take.py_func, add.py_func
         if plain:
-            monkeypatch.setattr(load, "total", load.total.py_func)
             for name in ("blocks_inside", "motion_of_row", "motion_of_block", "load_of_cell", "add_rows_of"):
                 monkeypatch.setattr(load, name, getattr(load, name).py_func)
             monkeypatch.setattr(load, "solid_velocity", coverage_rows.solid_velocity.py_func)
         row_load, loads, inside = np.full_like(wet._work.row_load, np.nan), np.zeros((2, 3)), np.zeros((2, 2))
         for y in range(5):
-            take(y, rows, patches, motion, True, wet._work.ramp, scratch[y], partial, row_load)
+            take(y, rows, patches, motion, True, scratch[y], row_load)
         add(patches.corner, patches.height, 5, False, row_load, loads, inside)
         made.append(np.column_stack((loads, inside)))
     assert np.all(np.isfinite(made[0]))

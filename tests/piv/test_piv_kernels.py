@@ -10,7 +10,7 @@ from scipy.ndimage import map_coordinates, spline_filter
 from porescale.piv.estimate import fit, interpolate, outliers
 from porescale.piv.estimate import splines as lattice
 from porescale.piv.estimate.correlate import Layout, block_products, correlation, peaks
-from porescale.piv.estimate.grid import Grid, expand, spline_matrix
+from porescale.piv.estimate.grid import Grid, expand, spline_matrix, spread
 from porescale.piv.estimate.rims import rims
 from porescale.piv.estimate.smoothing import smoothed
 from porescale.piv.images import spots
@@ -105,7 +105,7 @@ def test_grids_lie_on_whole_pixels_and_cover_the_picture():
 def test_values_between_vectors_are_natural_splines_straight_beyond():
     grid = Grid((64, 80), 16, 8)
     values = RNG.normal(size=grid.shape)
-    dense = grid.at_pixels(values)
+    dense = spread(grid.coefficients(values), *grid.axes())
     spline = make_interp_spline(grid.x, values[3], 3, bc_type="natural")
     np.testing.assert_allclose(dense[32, 8:73], spline(np.arange(8, 73)), atol=30 * EPS32)
     np.testing.assert_allclose(np.diff(dense[32, :9], 2), 0, atol=30 * EPS32)
@@ -113,7 +113,8 @@ def test_values_between_vectors_are_natural_splines_straight_beyond():
 
 
 def test_one_vector_is_the_same_everywhere():
-    np.testing.assert_allclose(Grid((20, 20), 16, 8).at_pixels(np.array([[3.5]])), 3.5, rtol=10 * EPS32)
+    grid = Grid((20, 20), 16, 8)
+    np.testing.assert_allclose(spread(grid.coefficients(np.array([[3.5]])), *grid.axes()), 3.5, rtol=10 * EPS32)
 
 
 @pytest.mark.parametrize("kernel", [outliers.median_residual, outliers.median_residual.py_func])

@@ -1,7 +1,7 @@
 """Convergence of soil: the friction of an endless layer that slides, from a strewn lattice, at several spacings.
 
-Noise of stress takes friction away, the more the finer the soil is, where each particle yields by its own mean stress;
-by that of its surroundings most of the noise cancels.
+Noise of stress takes friction away where each particle yields by its own mean stress, as much as diffusion leaves;
+by that of its surroundings most of it cancels.
 """
 
 from functools import partial
@@ -16,7 +16,7 @@ HELD = "no order is expected: half of the row at the floor is held, 0.5/N of wha
 ROTATING = (
     HELD + "upright columns of soil that rotate side by side are weaker, and form the easier the finer the soil is"
 )
-NOISY = HELD + "noise of stress takes friction away, the more the finer the soil is"
+NOISY = HELD + "noise of stress takes friction away, as much as diffusion leaves of it"
 
 
 def friction_error(options: dict[str, Any], rows: float) -> float:

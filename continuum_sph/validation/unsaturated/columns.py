@@ -14,7 +14,7 @@ import numpy as np
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.unsaturated import Moisture, Outside, VanGenuchten
 from continuum_sph.unsaturated.outside import Level
-from continuum_sph.unsaturated.richards import EFFECTIVE, HEAD, PRESSURE, properties_of, unity
+from continuum_sph.unsaturated.richards import EFFECTIVE, HEAD, properties_of, unity
 from continuum_sph.validation.unsaturated.richards import Column, VanGenuchtenMualem, relaxed
 from continuum_sph.water.bundles import Neighbours
 from continuum_sph.water.smoothing import SUPPORT, WENDLAND
@@ -134,11 +134,6 @@ class Run:
     def heads(self) -> Floats:
         """H of the pieces of soil, (s,) m; a view."""
         return self.water.state[:, HEAD]
-
-    @property
-    def pressures(self) -> Floats:
-        """p of the pieces of soil, (s,) Pa; a view."""
-        return self.water.state[:, PRESSURE]
 
 
 def error(given: Soaking, seconds: float) -> float:

@@ -102,14 +102,6 @@ class Tait:
         work: Floats = self.stiffness / (self.density * more) * (ratio**more + more / ratio - self.exponent)
         return work
 
-    def hydrostatic_density(self, depth: Floats, gravity: float) -> Floats:
-        """Density (kg/m³) of water at rest, ρ0 (1 + ρ0 g depth/B)^(1/γ).
-
-        It takes the pressure as ρ0 g depth, without the weight of what the compression adds (a part
-        g depth/2c0² of it, 0.25 % at c0 = 10 √(2 g depth)).
-        """
-        return self.density_at(self.density * gravity * depth)
-
     def settled_density(self, depth: Floats, gravity: float) -> Floats:
         """Density (kg/m³) at rest exactly: dp = ρ g d(depth) integrates to ρ0 (1 + (γ-1) g depth/c0²)^(1/(γ-1))."""
         base = 1.0 + (self.exponent - 1.0) * gravity * depth / self.sound_speed**2

@@ -77,7 +77,7 @@ def surroundings() -> str:
     return hashlib.sha256(repr((sources, versions, flags)).encode()).hexdigest()
 
 
-_MACHINERY = ("compiling", "jit", "kernel_key", "library", "simd", "simd_code")
+_MACHINERY = ("compiling", "jit", "kernel_key", "library", "simd", "simd_code", "simd_rows_code")
 
 
 def _described(kind: Any) -> Any:
@@ -269,36 +269,3 @@ _fetch: Any = intrinsic(_prefetch)
 @overload(prefetch, strict=False, jit_options=_INLINED)
 def _choose_fetch(array: Any, at: Any) -> Any:
     return lambda array, at: _fetch(array, at)
-
-
-def teach_tree_sum(total: Callable[..., Any], count: int) -> None:
-    """Let ``total`` (array, first) of ``tree_sum`` mean vector additions in kernels."""
-
-    def vector(typing: Any, array: Any, first: Any) -> Any:
-        """Signature and code of ``total`` in kernels."""
-
-        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            """One load, then halves of the vector added until one number is left."""
-            start = builder.gep(context.make_array(array)(context, builder, values[0]).data, [values[1]], inbounds=True)
-            kind = ir.VectorType(context.get_data_type(array.dtype), count)
-            left = builder.load(builder.bitcast(start, kind.as_pointer()), align=4)
-            size = count
-            while size > 1:
-                size //= 2
-                none = ir.Constant(left.type, ir.Undefined)
-                halves = [
-                    builder.shuffle_vector(left, none, ir.Constant(ir.VectorType(ir.IntType(32), size), lanes))
-                    for lanes in (list(range(size)), list(range(size, 2 * size)))
-                ]
-                left = builder.fadd(*halves)
-            return builder.extract_element(left, ir.Constant(ir.IntType(32), 0))
-
-        return array.dtype(array, numba.intp), code
-
-    vector_total: Any = intrinsic(vector)
-
-    def choose(array: Any, first: Any) -> Any:
-        """``total`` in kernels: the vector additions."""
-        return lambda array, first: vector_total(array, first)
-
-    overload(total, strict=False, jit_options=_INLINED)(choose)

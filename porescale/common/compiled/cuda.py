@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from porescale.common.compiled import simd
 from porescale.common.compiled.jit import Kernel, body_for, unchecked_view
 from porescale.common.core.errors import Fault, InputError
 
@@ -198,6 +199,10 @@ def _meaning(value: Any, law: Laws, real: type) -> Any:
         return _numbered()
     if value is unchecked_view:  # its plain form; inlined, since no device function may return a slice
         return cuda().jit(device=True, inline="always")(value)
+    if value is simd.fma and not simulated():
+        return _device_fma()
+    if getattr(value, "__module__", "") == simd.__name__ and not simulated():  # of numbers: a thread has no lanes
+        return device_function(import_module(simd.CODE).SCALAR[value], law, real)
     if isinstance(value, Kernel):
         return device_function(value.py_func, law, real)
     meaning = getattr(value, "meaning", None)
@@ -231,6 +236,17 @@ def _numpy() -> ModuleType:
 def _numbered() -> Any:
     """Device function that gives the number of the thread."""
     return cuda().jit(device=True)(FunctionType(_thread.__code__, {"cuda": cuda()}, "thread"))
+
+
+@cache
+def _device_fma() -> Any:
+    """Device function for ``fma``."""
+    return cuda().jit(device=True)(FunctionType(_fused.__code__, {"cuda": cuda()}, "fused"))
+
+
+def _fused(a: Any, b: Any, c: Any) -> Any:
+    """a b + c, rounded once."""
+    return cuda.fma(a, b, c)  # type: ignore[attr-defined]  # the module, where it is compiled
 
 
 def _thread() -> Any:

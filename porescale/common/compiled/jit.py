@@ -208,25 +208,6 @@ def prefetch(array: Any, at: Any) -> None:
     """
 
 
-def tree_sum(count: int) -> Any:
-    """Make an inline kernel (array, first) that sums ``count`` entries, a power of two, from ``first`` on.
-
-    The second half is added to the first until one is left: vector additions, in an order that no machine changes.
-    """
-
-    def total(array: Any, first: Any) -> Any:
-        """Sum of ``count`` entries from ``first`` on."""
-        left = array[first : first + count]
-        while left.shape[0] > 1:
-            half = left.shape[0] // 2
-            left = left[:half] + left[half:]
-        return left[0]
-
-    vars(total).update(py_func=total, meaning=count)
-    when_compiling(lambda machine: machine.teach_tree_sum(total, count))
-    return total
-
-
 prange: Any = range
 """``range`` over iterations that threads share, in a `parallel_kernel`; plain `range` elsewhere."""
 

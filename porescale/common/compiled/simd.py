@@ -8,6 +8,11 @@ In kernels what these functions return is a vector of LANES float64 that takes +
 in plain Python it is an array.  Numbers may stand for vectors everywhere.
 """
 
+import ctypes
+import os
+from collections.abc import Callable
+from ctypes.util import find_library
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -16,10 +21,11 @@ import numpy as np
 from porescale.common.compiled.jit import when_compiling
 
 LANES = 4  # twice as many are 2 % faster where vectors are that wide (measured), and half as many registers elsewhere
+EIGHT = 8  # numbers of either precision in the vectors of `load_eight`: a vector of float32 where they are 256 bits
 WORDS = 32  # that `store_sorted` compares at once: a row of partners
 COLUMNS = 8  # that `gather_rows` reads of a record
-CODE = f"{__package__}.simd_code"
-"""Module with the compiled form of these functions."""
+CODE, ROWS_CODE = f"{__package__}.simd_code", f"{__package__}.simd_rows_code"
+"""Modules with the compiled form of these functions: of those on vectors, and of those on lines and rows."""
 
 
 def sqrt(a: Any) -> Any:
@@ -42,9 +48,41 @@ def minimum(a: Any, b: Any) -> Any:
     return np.where(np.less(a, b), a, b)[()]
 
 
+def fma(a: Any, b: Any, c: Any) -> Any:
+    """a b + c of three vectors, or numbers of one precision, rounded once: one instruction where a processor has it.
+
+    Written out where it saves time, since a compiler that chose by itself would not choose alike in every kernel.  The
+    same bits on every machine; slow on those before 2013, which have no such instruction.
+    """
+    one, two, three = np.broadcast_arrays(a, b, c)
+    fused = _fused(one.dtype == np.float32)
+    return np.array([fused(*each) for each in zip(one.flat, two.flat, three.flat, strict=True)], one.dtype).reshape(
+        one.shape
+    )[()]
+
+
+@cache
+def _fused(single: bool) -> Callable[..., float]:
+    """C's own function of that, for float or double."""
+    library = ctypes.CDLL(find_library("m") or ("ucrtbase" if os.name == "nt" else None))
+    found, kind = (library.fmaf, ctypes.c_float) if single else (library.fma, ctypes.c_double)
+    found.restype, found.argtypes = kind, [kind] * 3
+    return found
+
+
+def choose(a: Any, b: Any, larger: Any, other: Any) -> Any:
+    """``larger`` where a > b, else ``other``, also where they cannot be compared."""
+    return np.where(np.greater(a, b), larger, other)[()]
+
+
 def zeros() -> Any:
     """Zero in every lane."""
     return np.zeros(LANES)
+
+
+def ramp() -> Any:
+    """0, 1, 2, … in the lanes."""
+    return np.arange(float(LANES))
 
 
 def reduce_add(a: Any) -> Any:
@@ -69,9 +107,28 @@ def mask_tail(a: Any, first: Any, end: Any) -> Any:
 
 
 def store(line: Any, first: Any, end: Any, values: Any) -> None:
-    """Write LANES values to ``line[first]``, ``line[first + 1]`` … of a float64 array, none from ``line[end]`` on."""
+    """Write LANES values to ``line[first]``, ``line[first + 1]`` … of an array of float64, or of float32 to which they
+    are rounded, none from ``line[end]`` on."""
     count = min(LANES, end - first)
     line[first : first + count] = values[:count]
+
+
+def load_eight(line: Any, first: Any) -> Any:
+    """Entries ``line[first]`` to ``line[first + 7]`` of an array of float32 or float64, as a vector of that.
+
+    Not checked: that they are there.
+    """
+    return line[first : first + EIGHT]
+
+
+def ramp_eight(line: Any) -> Any:
+    """0 to 7 as a vector of the precision of an array."""
+    return np.arange(EIGHT).astype(line.dtype)
+
+
+def store_eight(line: Any, first: Any, values: Any) -> None:
+    """Write a vector of eight to ``line[first]`` and on.  Not checked: that they are there."""
+    line[first : first + EIGHT] = values
 
 
 def store_sorted(line: Any, count: Any, target: Any, first: Any) -> None:
@@ -95,11 +152,11 @@ def row_gatherer(columns: int) -> Any:
         chosen = [row[k] - before if k < end else other for k in range(first, first + LANES)]
         return tuple(record[chosen, column : column + columns].T)
 
-    when_compiling(lambda _: import_module(CODE).teach_rows(take, columns))
+    when_compiling(lambda _: import_module(ROWS_CODE).teach_rows(take, columns))
     return take
 
 
 gather_rows = row_gatherer(COLUMNS)
 gather_four = row_gatherer(4)
 gather_two = row_gatherer(2)
-when_compiling(lambda _: import_module(CODE))
+when_compiling(lambda _: import_module(ROWS_CODE))

@@ -132,10 +132,3 @@ def lognormal_radii(count: int, diameter: float, spread: float) -> Floats:
     quantile = low + (1.0 - 2.0 * low) * (np.arange(count) + 0.5) / max(count, 1)
     relative = np.exp(spread * ndtri(quantile))
     return np.asarray(0.5 * diameter * relative / (relative.mean() if count else 1.0))
-
-
-def percent_finer(radius: Floats, diameter: Floats) -> Floats:
-    """Percent of the mass of discs of ``radius`` (n,) m that is finer than each ``diameter`` (k,) m, (k,)."""
-    size = np.sort(2.0 * radius)
-    mass = np.concatenate(([0.0], np.cumsum(size**2)))
-    return np.asarray(100.0 * mass[np.searchsorted(size, diameter)] / mass[-1])

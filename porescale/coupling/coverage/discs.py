@@ -12,13 +12,13 @@ line: a disc d cells wide needs 2 (d + 2) of them.  Derived from G being the are
 import math
 
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange
-from porescale.coupling.coverage.rows import BLOCK
+from porescale.common.compiled.simd import LANES, choose, fma, load, maximum, minimum, ramp, sqrt, store
 
 CHUNKS = 64
 """Parts of the discs that are done side by side; any number gives the same patches."""
 FAR, NOWHERE = 2.0**40, -(2**40)
 """Cells beyond which a disc counts as gone, since cells are counted in integers; where its patch is put then."""
-SCRATCH = 7
+SCRATCH = 6
 """Rows of scratch that ``cover`` needs."""
 
 
@@ -30,15 +30,15 @@ def small_angle(s):
     3 + sqrt(8) = 5.83 each, to less than a rounding; error measured 2.3e-16.
     """
     u = 4.0 * s * s - 1.0
-    p = 1.341269811266304e-10 + u * 4.1062856818522654e-11
-    p = 8.518395371797598e-10 + u * (2.5575438063659323e-10 + u * p)
-    p = 1.0809672108042573e-08 + u * (3.2049981064158968e-09 + u * p)
-    p = 1.257815748470195e-07 + u * (3.647297352409811e-08 + u * p)
-    p = 1.5669849096691668e-06 + u * (4.402038834245034e-07 + u * p)
-    p = 2.1345548280526272e-05 + u * (5.701782186250886e-06 + u * p)
-    p = 0.000340863723836082 + u * (8.302317801499006e-05 + u * p)
-    p = 0.0077989022389580815 + u * (0.0015196685395952932 + u * p)
-    return s * (1.0471975511965979 + u * (0.05375149359132692 + u * p))
+    p = fma(u, 4.1062856818522654e-11, 1.341269811266304e-10)
+    p = fma(u, fma(u, p, 2.5575438063659323e-10), 8.518395371797598e-10)
+    p = fma(u, fma(u, p, 3.2049981064158968e-09), 1.0809672108042573e-08)
+    p = fma(u, fma(u, p, 3.647297352409811e-08), 1.257815748470195e-07)
+    p = fma(u, fma(u, p, 4.402038834245034e-07), 1.5669849096691668e-06)
+    p = fma(u, fma(u, p, 5.701782186250886e-06), 2.1345548280526272e-05)
+    p = fma(u, fma(u, p, 8.302317801499006e-05), 0.000340863723836082)
+    p = fma(u, fma(u, p, 0.0015196685395952932), 0.0077989022389580815)
+    return s * fma(u, fma(u, p, 0.05375149359132692), 1.0471975511965979)
 
 
 @inline
@@ -47,37 +47,39 @@ def quarter_area(a, r):
 
     The angle comes from the shorter leg: asin(a/r) loses half the digits of a disc that just touches a grid line.
     """
-    h = math.sqrt((r - a) * (r + a))
-    angle = small_angle(min(a, h) * (1.0 / r if r > 0.0 else 0.0))
-    return 0.5 * (a * h + r * r * (angle if a <= h else 0.5 * math.pi - angle))
+    h = sqrt((r - a) * (r + a))
+    angle = small_angle(minimum(a, h) * (1.0 / r if r > 0.0 else 0.0))
+    return 0.5 * (a * h + r * r * choose(a, h, 0.5 * math.pi - angle, angle))
 
 
 @inline
 def line_at(distance, r):
-    """A grid line's distance from the centre clamped to [-r, r], G of it with its sign, and the sign."""
-    a = min(max(distance, -r), r)
-    return a, math.copysign(quarter_area(abs(a), r), a), math.copysign(1.0, a)
+    """A grid line's distance from the centre clamped to [-r, r], G of it with its sign, and the sign; also of several
+    lines side by side (simd.py)."""
+    a = minimum(maximum(distance, -r), r)
+    sign = choose(0.0, a, -1.0, 1.0)
+    return a, quarter_area(sign * a, r) * sign, sign
 
 
 @inline
 def mark_lines(first, count, r, at, area, side):
     """What corners need of their grid lines, the first of them at ``first`` from the centre.
 
-    Overwrites, of ``count`` lines, a multiple of BLOCK, and one more that repeats the last: at, distance to the centre
+    Overwrites, of ``count`` lines, a multiple of LANES, and one more that repeats the last: at, distance to the centre
     clamped to [-r, r];  side, its sign;  area, G of it with that sign.
     """
-    for b in range(0, count, BLOCK):
-        distance, g, sign = at[b : b + BLOCK], area[b : b + BLOCK], side[b : b + BLOCK]
-        offset = first + b
-        for i in range(BLOCK):
-            distance[i], g[i], sign[i] = line_at(offset + i, r)
+    for b in range(0, count, LANES):
+        distance, g, sign = line_at(ramp() + (first + b), r)
+        store(at, b, count, distance)
+        store(area, b, count, g)
+        store(side, b, count, sign)
     at[count], area[count], side[count] = at[count - 1], area[count - 1], side[count - 1]
 
 
 @inline
 def corner_area(a, ga, sa, b, sb, outer, room):
     """K(a, b), a and b signed: ga = sign(a) G(|a|), signs sa, sb, outer = sb (G(|b|) - pi r²/4), room = r² - b²."""
-    return a * b if a * a <= room else ga * sb + sa * outer
+    return choose(a * a, room, ga * sb + sa * outer, a * b)
 
 
 @inline
@@ -107,8 +109,8 @@ def least_part(r):
 @inline
 def full_or_empty(part, little):
     """The part of a cell, or all or none of it where little is missing."""
-    part = part if part > little else 0.0
-    return part if part < 1.0 - little else 1.0
+    part = choose(part, little, part, 0.0)
+    return choose(1.0 - little, part, part, 1.0)
 
 
 @inline
@@ -128,22 +130,23 @@ def place_corners(centre, radius, corner):
 
 @inline
 def cover_disc(x, y, r, x0, y0, height, stride, fraction, lines):
-    """Fractions of the cells around one disc, centre (x, y), into fraction (height * stride,); lines: scratch."""
-    a, ga, sa, b, gb, sb, below = lines[0], lines[1], lines[2], lines[3], lines[4], lines[5], lines[6, :BLOCK]
-    mark_lines(x0 - x, stride, r, a, ga, sa)
-    mark_lines(y0 - y, stride, r, b, gb, sb)
+    """Fractions of the cells around one disc, centre (x, y), into fraction (height * stride,); lines: scratch.
+
+    Overwrites the first ``height`` + 1 cells of every row, and those up to a multiple of LANES.
+    """
+    a, ga, sa, b, gb, sb = lines[0], lines[1], lines[2], lines[3], lines[4], lines[5]
+    width = (height + LANES) // LANES * LANES
+    mark_lines(x0 - x, width, r, a, ga, sa)
+    mark_lines(y0 - y, width, r, b, gb, sb)
     little = least_part(r)
-    for at in range(0, stride, BLOCK):
-        p, gp, sp = a[at : at + BLOCK], ga[at : at + BLOCK], sa[at : at + BLOCK]
-        q, gq, sq = a[at + 1 : at + 1 + BLOCK], ga[at + 1 : at + 1 + BLOCK], sa[at + 1 : at + 1 + BLOCK]
-        for j in range(height + 1):
-            line = across((b[j], gb[j], sb[j]), r)
-            row = max(j - 1, 0) * stride + at  # the first line has no cells below it: they come out right with the next
-            e = fraction[row : row + BLOCK]
-            for i in range(BLOCK):
-                strip = strip_area((p[i], gp[i], sp[i]), (q[i], gq[i], sq[i]), line)
-                e[i] = full_or_empty(strip - below[i], little)
-                below[i] = strip
+    for at in range(0, width, LANES):
+        left = load(a, at, width), load(ga, at, width), load(sa, at, width)
+        right = load(a, at + 1, width + 1), load(ga, at + 1, width + 1), load(sa, at + 1, width + 1)
+        below = strip_area(left, right, across((b[0], gb[0], sb[0]), r))
+        for j in range(height):
+            above = strip_area(left, right, across((b[j + 1], gb[j + 1], sb[j + 1]), r))
+            store(fraction, j * stride + at, fraction.shape[0], full_or_empty(above - below, little))
+            below = above
 
 
 @parallel_kernel

@@ -11,15 +11,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch, unchecked_view
+from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch
+from porescale.common.compiled.simd import EIGHT, fma, load_eight, ramp_eight, store_eight
 from porescale.common.core.aligned import aligned_zeros
 
-BLOCK = 16
-"""Cells done at once: the widest vector of float32."""
+BLOCK = EIGHT
+"""Cells done at once."""
 AHEAD = 12
 """Entries of a row ahead of which patches are fetched: bodies lie apart in memory, and waiting for each would cost more
 than all that is done with it."""
-LISTING = 16
+LISTING = 4
 """Parts of the lattice whose rows are listed side by side; any number gives the same lists."""
 
 
@@ -197,16 +198,16 @@ def motion_of_block(n, b, row, patches, motion):
 def solid_velocity(e, i, block):
     """Velocity of a body in cell ``i`` of a block of which it covers e;  block: ``motion_of_block``."""
     _, _, turning, twist, vx, cx, vy, cy = block
-    return vx + e * cx, vy + turning * i + e * (cy + twist * i)
+    return fma(e, cx, vx), fma(e, fma(twist, i, cy), fma(turning, i, vy))
 
 
 @inline
-def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
+def rasterize_row(y, rows, patches, motion, periodic_x, scratch):
     """Add up the solid fractions of one row, and fractions times solid velocity at the cells' centres.
 
     The velocity in a cell that a body covers by e is its own and e times the half-step correction.
 
-    y: row of the lattice;  motion: ``Motion``;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3 or 4, BLOCK + nx +
+    y: row of the lattice;  motion: ``Motion``  Adds to scratch (3 or 4, BLOCK + nx +
     BLOCK), whose fourth row, where rims are soft, gets fractions times theta; returns the first column that may be
     covered and one past the last.
     """
@@ -232,21 +233,14 @@ def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
             first, last = blocks_inside(base, stride, nx)
             for b in range(first, last, BLOCK):
                 block = motion_of_block(n, b, row, patches, motion)
-                e = unchecked_view(patches.fraction, at + b, BLOCK)
-                x = base + b + BLOCK
-                t = unchecked_view(s, x, BLOCK)
-                tx = unchecked_view(sx, x, BLOCK)
-                ty = unchecked_view(sy, x, BLOCK)
-                for i in range(BLOCK):
-                    vx, vy = solid_velocity(e[i], ramp[i], block)
-                    t[i] += e[i]
-                    tx[i] += e[i] * vx
-                    ty[i] += e[i] * vy
+                e, i, x = load_eight(patches.fraction, at + b), ramp_eight(s), base + b + BLOCK
+                vx, vy = solid_velocity(e, i, block)
+                store_eight(s, x, load_eight(s, x) + e)
+                store_eight(sx, x, load_eight(sx, x) + e * vx)
+                store_eight(sy, x, load_eight(sy, x) + e * vy)
                 if scratch.shape[0] > 3:
-                    softness = ramp.dtype.type(motion.theta[n])
-                    summed = unchecked_view(scratch[3], x, BLOCK)
-                    for i in range(BLOCK):
-                        summed[i] += e[i] * softness
+                    st = scratch[3]
+                    store_eight(st, x, load_eight(st, x) + e * s.dtype.type(motion.theta[n]))
             if first < last:
                 leftmost = min(leftmost, base + first)
                 rightmost = max(rightmost, base + last)
@@ -257,7 +251,7 @@ def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
 
 
 @parallel_kernel
-def rasterize(rows, patches, motion, periodic_x, ramp, scratch, out):
+def rasterize(rows, patches, motion, periodic_x, scratch, out):
     """All rows at once, for output: overwrites out (3, ny, nx) with what ``rasterize_row`` gives.
 
     scratch (bands, 3 or 4, BLOCK + nx + BLOCK): zero before and after.
@@ -266,7 +260,7 @@ def rasterize(rows, patches, motion, periodic_x, ramp, scratch, out):
     ny, nx = out.shape[1], out.shape[2]
     for band in prange(bands):
         for y in range(band * ny // bands, (band + 1) * ny // bands):
-            rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch[band])
+            rasterize_row(y, rows, patches, motion, periodic_x, scratch[band])
             for k in range(3):  # element by element: assigned as slices it takes ten times as long to compile
                 for x in range(nx):
                     out[k, y, x] = scratch[band, k, BLOCK + x]

@@ -33,26 +33,20 @@ def load_at(i, block, line, gained, patches):
 
 @inline
 def two_loads(i, block, line, gained, patches):
-    """Cells i and i + 8: halves of a block are added until one is left, as ``tree_sum`` does."""
-    return add_loads(load_at(i, block, line, gained, patches), load_at(i + 8, block, line, gained, patches))
+    """Cells i and i + 4: halves of a block are added until one is left, as ``reduce_add`` does."""
+    return add_loads(load_at(i, block, line, gained, patches), load_at(i + 4, block, line, gained, patches))
 
 
 @inline
 def four_loads(i, block, line, gained, patches):
-    """Those and i + 4, i + 12."""
-    return add_loads(two_loads(i, block, line, gained, patches), two_loads(i + 4, block, line, gained, patches))
-
-
-@inline
-def eight_loads(i, block, line, gained, patches):
     """Every second cell from i on."""
-    return add_loads(four_loads(i, block, line, gained, patches), four_loads(i + 2, block, line, gained, patches))
+    return add_loads(two_loads(i, block, line, gained, patches), two_loads(i + 2, block, line, gained, patches))
 
 
 @inline
 def block_load(block, line, gained, patches):
-    """All sixteen."""
-    return add_loads(eight_loads(0, block, line, gained, patches), eight_loads(1, block, line, gained, patches))
+    """All eight."""
+    return add_loads(four_loads(0, block, line, gained, patches), four_loads(1, block, line, gained, patches))
 
 
 @inline
@@ -71,19 +65,14 @@ def rim_at(i, line, gained, patches):
 def block_rim(line, gained, patches):
     """``rim_at`` of a block, added as ``block_load`` does."""
     whole, edges = patches.fraction.dtype.type(0), patches.fraction.dtype.type(0)
-    for first in range(2):
-        half, half_edges = whole, edges
-        for second in range(0, 4, 2):
-            i = first + second
-            a, ea = rim_at(i, line, gained, patches)
-            b, eb = rim_at(i + 8, line, gained, patches)
-            c, ec = rim_at(i + 4, line, gained, patches)
-            d, ed = rim_at(i + 12, line, gained, patches)
-            quarter, quarter_edges = (a + b) + (c + d), (ea + eb) + (ec + ed)
-            half = quarter if second == 0 else half + quarter
-            half_edges = quarter_edges if second == 0 else half_edges + quarter_edges
-        whole = half if first == 0 else whole + half
-        edges = half_edges if first == 0 else edges + half_edges
+    for i in range(2):
+        a, ea = rim_at(i, line, gained, patches)
+        b, eb = rim_at(i + 4, line, gained, patches)
+        c, ec = rim_at(i + 2, line, gained, patches)
+        d, ed = rim_at(i + 6, line, gained, patches)
+        half, half_edges = (a + b) + (c + d), (ea + eb) + (ec + ed)
+        whole = half if i == 0 else whole + half
+        edges = half_edges if i == 0 else edges + half_edges
     return whole, edges
 
 

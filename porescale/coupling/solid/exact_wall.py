@@ -29,6 +29,7 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
+from porescale.common.compiled.simd import fma
 from porescale.coupling.coverage.soft_rim import SLIP_FACTOR
 from porescale.coupling.solid.entry import Holds, SolidOperator
 from porescale.coupling.solid.law import (
@@ -124,8 +125,8 @@ def _missing_momentum(cell, kept, rho, jx, jy):
     j with h."""
     fx, fy = jx + cell.hx, jy + cell.hy
     return (
-        cell.e * fx + cell.b * (rho * cell.vx - jx) - kept * (jx - cell.hx),
-        cell.e * fy + cell.b * (rho * cell.vy - jy) - kept * (jy - cell.hy),
+        fma(-kept, jx - cell.hx, fma(cell.e, fx, cell.b * fma(rho, cell.vx, -jx))),
+        fma(-kept, jy - cell.hy, fma(cell.e, fy, cell.b * fma(rho, cell.vy, -jy))),
     )
 
 

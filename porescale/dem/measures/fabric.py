@@ -1,4 +1,4 @@
-"""Contacts of a region: coordination, rattlers, fabric, and how normal forces are distributed."""
+"""Contacts of a region: coordination, rattlers, fabric, and where contacts point."""
 
 from typing import NamedTuple
 
@@ -101,19 +101,6 @@ def rose(contacts: Contacts, bins: int = 36, weight: Floats | None = None) -> tu
     counted, _ = np.histogram(both, edges, weights=twice)
     total = counted.sum()
     return edges, counted / (total if total > 0 else 1.0) / np.diff(edges)
-
-
-def force_distribution(contacts: Contacts, bins: int = 30, highest: float = 6.0) -> tuple[Floats, Floats]:
-    """(edges (bins + 1,), probability density (bins,)) of loaded normal forces over their mean, up to ``highest``.
-
-    Forces beyond count in the last bin, so that the density integrates to one.
-    """
-    force = contacts.normal_force[loads(contacts)]
-    edges = np.linspace(0.0, highest, bins + 1)
-    if not len(force):
-        return edges, np.zeros(bins)
-    counted, _ = np.histogram(np.minimum(force / force.mean(), highest), edges)
-    return edges, counted / len(force) / np.diff(edges)
 
 
 def _per_disc(contacts: Contacts, alive: Mask, count: int) -> NDArray[np.int64]:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
+from porescale.common.compiled.simd import fma
 from porescale.lbm.collision.entry import Operator, Stability
 from porescale.lbm.collision.law import (
     collide,
@@ -96,7 +97,7 @@ def _collide_partial_without_force(f, m, rate, part, law):
     c, own, minus = numbers(rate), magic_rate(rate, law), part.minus
     gain = symmetric_equilibrium(m, part.plus * rate)
     lost = c.one - part.kept - minus * (c.one - own)
-    added = (minus * (own * m.jx) + part.px, minus * (own * m.jy) + part.py)
+    added = (fma(minus, own * m.jx, part.px), fma(minus, own * m.jy, part.py))
     return relax_by(f, part.plus * rate, lost, gain, added)
 
 
@@ -108,7 +109,7 @@ def relax_halves(f, m, plus, minus, law):
     """
     c = numbers(plus)
     sp, sm = c.one - c.half * plus, c.one - c.half * minus
-    added = (minus * m.jx + sm * law.fx, minus * m.jy + sm * law.fy)
+    added = (fma(minus, m.jx, sm * law.fx), fma(minus, m.jy, sm * law.fy))
     return relax_by(f, plus, minus, symmetric_gain(m, plus, sp, law), added)
 
 
@@ -118,8 +119,8 @@ def relax_partial(f, m, plus, minus, part, law):
     c = numbers(plus)
     sp, sm = part.plus * (c.one - c.half * plus), c.one - c.half * minus
     added = (
-        part.minus * (minus * m.jx + sm * law.fx) + part.px,
-        part.minus * (minus * m.jy + sm * law.fy) + part.py,
+        fma(part.minus, fma(minus, m.jx, sm * law.fx), part.px),
+        fma(part.minus, fma(minus, m.jy, sm * law.fy), part.py),
     )
     lost = c.one - part.kept - part.minus * (c.one - minus)
     rate = part.plus * plus
@@ -134,10 +135,10 @@ def symmetric_gain(m, share, forcing, law):
     jxx = jx * ux
     jyy = jy * uy
     return (
-        share * (d - c.c15 * (jxx + jyy)) - c.three * forcing * (ux * fx + uy * fy),
-        c.c45 * share * jxx + c.nine * forcing * ux * fx,
-        c.c45 * share * jyy + c.nine * forcing * uy * fy,
-        c.nine * (share * jx * uy + forcing * (ux * fy + uy * fx)),
+        fma(share, fma(-c.c15, jxx + jyy, d), -c.three * forcing * (ux * fx + uy * fy)),
+        fma(c.c45 * share, jxx, c.nine * forcing * (ux * fx)),
+        fma(c.c45 * share, jyy, c.nine * forcing * (uy * fy)),
+        c.nine * fma(share * jx, uy, forcing * (ux * fy + uy * fx)),
     )
 
 
@@ -148,7 +149,7 @@ def symmetric_equilibrium(m, share):
     d, jx, jy, ux, uy = m
     jxx = jx * ux
     jyy = jy * uy
-    q = share * (d - c.c15 * (jxx + jyy))
+    q = share * fma(-c.c15, jxx + jyy, d)
     return q, c.c45 * share * jxx, c.c45 * share * jyy, c.nine * (share * jx * uy)
 
 
@@ -168,22 +169,22 @@ def relax_by(f, plus, minus, gain, added):
     t1, t2 = c.three * w1, c.three * w2
     hp = half * plus
     hm = half * minus
-    g0 = f0 - plus * f0 + c.w0 * q
-    s = w1 * (q + xx) - hp * (f1 + f2)
-    a = t1 * mx - hm * (f1 - f2)
+    g0 = fma(c.w0, q, fma(-plus, f0, f0))
+    s = fma(-hp, f1 + f2, w1 * (q + xx))
+    a = fma(-hm, f1 - f2, t1 * mx)
     g1 = f1 + s + a
     g2 = f2 + s - a
-    s = w1 * (q + yy) - hp * (f3 + f4)
-    a = t1 * my - hm * (f3 - f4)
+    s = fma(-hp, f3 + f4, w1 * (q + yy))
+    a = fma(-hm, f3 - f4, t1 * my)
     g3 = f3 + s + a
     g4 = f4 + s - a
     diagonal = q + xx + yy
-    s = w2 * (diagonal + xy) - hp * (f5 + f6)
-    a = t2 * (mx + my) - hm * (f5 - f6)
+    s = fma(-hp, f5 + f6, w2 * (diagonal + xy))
+    a = fma(-hm, f5 - f6, t2 * (mx + my))
     g5 = f5 + s + a
     g6 = f6 + s - a
-    s = w2 * (diagonal - xy) - hp * (f7 + f8)
-    a = t2 * (my - mx) - hm * (f7 - f8)
+    s = fma(-hp, f7 + f8, w2 * (diagonal - xy))
+    a = fma(-hm, f7 - f8, t2 * (my - mx))
     g7 = f7 + s + a
     g8 = f8 + s - a
     return g0, g1, g2, g3, g4, g5, g6, g7, g8

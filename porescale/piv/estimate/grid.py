@@ -44,10 +44,6 @@ class Grid:
         """Columns of centres, px."""
         return self.start + self.step * np.arange(self.shape[1], dtype=float)
 
-    def at_pixels(self, values: Floats) -> NDArray[np.float32]:
-        """``values`` (ny, nx) at every pixel, float32: natural cubic splines, straight beyond the outer centres."""
-        return spread(self.coefficients(values), *self.axes())
-
     def axes(self, every: int = 1) -> "tuple[Axis, Axis]":
         """Interpolation from coefficients to centres of blocks of ``every`` px a side (1: pixels), down and across."""
         down, across = (

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import pytest
 
 from porescale.common.compiled import jit
-from porescale.common.compiled.jit import Kernel, inline, kernel, law_function, precision_constants, tree_sum
+from porescale.common.compiled.jit import Kernel, inline, kernel, law_function, precision_constants
 from porescale.common.compiled.kernel_key import Unknown, key_of
+from porescale.common.compiled.simd import row_gatherer
 
 ROOT = Path(jit.__file__).resolve().parents[3]
 
@@ -215,7 +216,7 @@ def test_a_kernel_made_within_a_function_has_the_key_of_what_it_was_made_from():
     assert len({key(made(2.0)), key(made(3.0)), key(made(2)), key(made(True))}) == 4  # values and their types
 
 
-def test_numbers_by_precision_and_lengths_of_sums_count():
+def test_numbers_by_precision_and_widths_of_rows_count():
     def user(chosen):
         """A kernel that calls what it is given."""
 
@@ -225,7 +226,7 @@ def test_numbers_by_precision_and_lengths_of_sums_count():
 
         return calls
 
-    assert key(user(tree_sum(4))) == key(user(tree_sum(4))) != key(user(tree_sum(8)))
+    assert key(user(row_gatherer(4))) == key(user(row_gatherer(4))) != key(user(row_gatherer(8)))
     third, again, half = (precision_constants(lambda real, n=n: (real(1 / n),)) for n in (3, 3, 2))
     assert key(user(third)) == key(user(again)) != key(user(half))
 

@@ -39,7 +39,7 @@ def test_is_a_model():
 
 
 PAPER = {"kernel": "cubic", "smoothing_ratio": 1.2, "smoothing_length": "evolved", "density_filter": 30, "xsph": 0.3}
-MODERN = {"gradient": "corrected", "shifting": 1.0, "diffusion_of": "linear"}
+MODERN = {"gradient": "corrected", "shifting": 1.0, "diffusion_of": "linear", "xsph": 0.2}
 
 
 @pytest.mark.parametrize("numerics", [{}, PAPER, MODERN])
@@ -225,7 +225,7 @@ def test_a_particle_that_reaches_a_wall_is_stopped_there():
 def test_pass_over_pairs_as_plain_python(monkeypatch):
     # Compiled kernels do not check bounds; plain Python does.  prange is range there.
     def made():
-        table = trials.column_scene(0.1, tank=(0.5, 0.5), column=(0.4, 0.4), xsph=0.2, **MODERN).model_dump()
+        table = trials.column_scene(0.1, tank=(0.5, 0.5), column=(0.4, 0.4), **MODERN).model_dump()
         return Simulation(validate(type(scene()), table))
 
     compiled, plain = made(), made()

@@ -209,7 +209,7 @@ def test_water_slides_along_slip_and_is_held_by_stick(particles):
 
 def test_cohesion_of_eq_54_pulls_particles_together():
     a, state = 1e-6, Tait(1000.0, 20.0)
-    flow = stirred(fluids=(Fluid(state, 0.0, cohesion=a),), alpha=0.0, beta=0.0)
+    flow = stirred(fluids=(Fluid(state, 0.0, cohesion=a),), alpha=0.0)  # nothing moves: beta adds nothing
     layer = flow.layer
     layer.v[:] = 0.0
     layer.predicted[:] = 1000.0
