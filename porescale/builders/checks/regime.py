@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from porescale.builders.checks.flows import check_flows
-from porescale.builders.checks.held_gaps import narrow_gap
+from porescale.builders.checks.held_places import narrow_gap
 from porescale.builders.checks.limits import (
     CELLS_THICK,
     DENSITY_REFUSE,
