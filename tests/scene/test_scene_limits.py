@@ -1,8 +1,10 @@
 """``check`` warns where the map of stability ends: just inside it is silent, just outside it says so, with a repair."""
 
 import json
+import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from porescale import Scene
@@ -10,6 +12,7 @@ from porescale.builders.derive import derive
 from porescale.common.evidence.stability import RIGHT, Row
 from porescale.coupling import limits
 from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.validation.coupling.arrays import SQUARE, square
 from tests.reference.folders import ROOT
 from tests.reference.scenes import column, grain, table, water
 
@@ -172,3 +175,34 @@ def test_a_contact_step_too_long_for_the_speed_to_expect_is_warned_of():
     assert not said(soft(step=1.24 * made.contact_step), "contact.step")
     (line,) = said(soft(step=1.26 * made.contact_step), "contact.step")
     assert line.endswith(f"where a run stops; {made.contact_step:.2g} s is safe")
+
+
+def array(fraction, cells, **changes):
+    """A disc of a periodic square array, ``cells`` a period."""
+    side = cells * H
+    held = [{"x": side / 2, "y": side / 2, "diameter": 2 * side * math.sqrt(fraction / math.pi)}]
+    sides = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
+    return {
+        "grains": None, "contact": None, "gate": None, "gravity": [0, 0], "disc": held, "fluid__body_force": [1, 0],
+        "domain": {"width": side, "height": side, **sides}, **changes,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(("fraction", "cells", "gap", "percent"), [(0.6, 11, "1.4", 28), (0.5, 13, "2.6", 5)])
+def test_narrow_gaps_between_held_discs_are_said_with_what_the_drag_is_off(fraction, cells, gap, percent):
+    (line,) = said(column(**array(fraction, cells)), "apart")
+    assert line.startswith(f"held discs stand {gap} cells apart")
+    assert f" {percent} % too small" in line
+    assert "'narrow-wall', mends it" in line
+    # What is said is what is: the worst of these relaxation times, as the mean over places (its digits are printed).
+    worst = max(1 - square((fraction,), (tau,), np.inf, count=2).measured[0] / SQUARE[fraction] for tau in (0.55, 1.0))
+    assert 100 * worst == pytest.approx(percent, abs=0.1 * percent)
+    # The twins: with the operator for them, and with the wider gaps of a looser array, nothing is said.
+    assert not said(column(**array(fraction, cells, fluid__solid_operator="narrow-wall")), "apart")
+    assert not said(column(**array(0.3, 16)), "apart")
+
+
+def test_a_narrower_gap_than_was_measured_is_at_least_as_far_off_and_touching_discs_have_none():
+    (line,) = said(column(**array(0.7, 11)), "apart")
+    assert "at least 28 %" in line
+    assert not said(column(**array(math.pi / 4, 11)), "apart")

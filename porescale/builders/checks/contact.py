@@ -39,8 +39,9 @@ def material_doubts(scene: Scene) -> list[str]:
     grains, first = scene.grains, scene.material[0]
     named = [(f"grains.grain[{k}]", it.material) for k, it in enumerate(grains.grain)]
     named += [("grains.packing", grains.packing.material)] if grains.packing else []
-    for kind, bodies in (("clump", scene.clump), ("segment", scene.segment), ("polygon", scene.polygon)):
-        named += [(f"{kind}[{k}]", it.material) for k, it in enumerate(bodies)]
+    named += [(f"clump[{k}]", it.material) for k, it in enumerate(scene.clump)]
+    named += [(f"segment[{k}]", it.material) for k, it in enumerate(scene.segment)]
+    named += [(f"polygon[{k}]", it.material) for k, it in enumerate(scene.polygon)]
     none = [key for key, name in named if not name]
     other = first.density is not None and first.density != grains.density
     if none and (len(scene.material) > 1 or other):

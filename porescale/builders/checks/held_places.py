@@ -1,7 +1,8 @@
-"""Where held discs must not come, and what a ring cannot be beside."""
+"""Where held discs must not come, how near to each other they are, and what a ring cannot be beside."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,8 @@ import numpy as np
 
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
+from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.lbm.scales import Scales
 from porescale.scene.bodies.disc import Disc
 
 if TYPE_CHECKING:
@@ -18,6 +21,8 @@ TOUCH = 1e-3
 """Share of a radius by which a disc may be in something."""
 CLOSE, MOST = 0.01, 20_000
 """Share of a radius that a disc goes at most between two places that are looked at; most places of one disc."""
+MANY = 1000
+"""Discs up to which every pair is looked at for the narrowest gap."""
 
 
 def path_of(it: Disc, end: float) -> tuple[Floats, Floats]:
@@ -57,3 +62,34 @@ def check_ring(scene: Scene) -> list[Fault]:
             problem = "stands in the ring" if time == 0.0 else f"runs into the ring after {time:.4g} s"
             faults.append(Fault(f"disc[{k}]", None, problem, repair="move one of them"))
     return faults
+
+
+def narrow_gap(scene: Scene, scales: Scales) -> str:
+    """A warning of the narrowest gap between held discs that stand, periodic images among them, or nothing.
+
+    Expected is what square arrays of such gaps were off by (``SolidOperator.gaps``), between which it goes linearly.
+    """
+    assert scene.fluid
+    table = SOLID_OPERATORS[scene.fluid.solid_operator].gaps
+    discs = [it for it in scene.disc if it.fastest == 0.0]
+    if not table or not discs or len(discs) > MANY:
+        return ""
+    at, radius = np.array([(it.x, it.y) for it in discs]), np.array([it.diameter / 2 for it in discs])
+    periods = [size if d else 0.0 for size, d in zip((scene.domain.width, scene.domain.height), scene.domain.periodic,
+                                                     strict=True)]  # fmt: skip
+    least = np.inf
+    for shift in itertools.product(*((-p, 0.0, p) if p else (0.0,) for p in periods)):
+        gap = np.hypot(*np.moveaxis(at[:, None] - at + shift, -1, 0)) - radius[:, None] - radius
+        if shift == (0.0,) * 2:
+            np.fill_diagonal(gap, np.inf)
+        least = min(least, float(gap.min()))
+    cells, widest = least / scales.spacing, table[-1][0]
+    if not 0.0 < cells < widest * (1 - 1e-9):
+        return ""
+    off = float(np.interp(cells, [gap for gap, _ in table], [share for _, share in table]))
+    more = "at least " if cells < table[0][0] else ""
+    others = " or ".join(f"fluid.solid_operator = {n!r}" for n, it in SOLID_OPERATORS.items() if it.free_refused)
+    return (
+        f"held discs stand {cells:.2g} cells apart: of an array of such gaps the drag is {more}{100 * off:.0f} % too"
+        f" small; a spacing of {least / widest:.2g} m, or {others}, mends it"
+    )

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from porescale.builders.checks.flows import check_flows
+from porescale.builders.checks.held_places import narrow_gap
 from porescale.builders.checks.limits import (
     CELLS_THICK,
     DENSITY_REFUSE,
@@ -197,6 +198,7 @@ def check_regime(
             f">= {RING_CELLS * scales.spacing:g}",
         )
         faults.append(Fault("ring.diameter", scene.ring.diameter, cells, "m", allowed, repair))
+    warnings += filter(None, [narrow_gap(scene, scales)])
     if sizes is None:
         return 0.0
     assert scene.fluid

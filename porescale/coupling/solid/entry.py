@@ -33,7 +33,9 @@ class SolidOperator:
     body's (load.py);  force_everywhere : whether the body force acts in the whole of a cell;  held_only : whether free
     discs run away with it;  longest_relaxation_time : up to which drag is right;  magic : the one magic parameter that
     it is made for, None for any;  free_refused : whether scenes with free grains are refused with it, and the map of
-    stability leaves it out;  holds : by weight;  order : place in lists, the recommended one first.
+    stability leaves it out;  gaps : gap in cells between discs of a square array, and by how much of it the drag is too
+    small there, the worst of relaxation times up to 1; ascending;  holds : by weight;  order : place in lists, the
+    recommended one first.
     """
 
     name: str
@@ -49,5 +51,6 @@ class SolidOperator:
     longest_relaxation_time: float = 1.5
     magic: float | None = None
     free_refused: bool = False
+    gaps: tuple[tuple[float, float], ...] = ()
     holds: Mapping[str, Holds] = field(default_factory=dict)
     order: int = 100
