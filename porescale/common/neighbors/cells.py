@@ -53,9 +53,15 @@ def tilted_image(dx, dy, period_x, period_y, tilt):
 
 @inline
 def wrapped(x, lower, period):
-    """Coordinate (m) of the image of ``x`` in [lower, lower + period]; ``period`` 0: ``x`` itself."""
+    """Coordinate (m) of the image of ``x`` in [lower, lower + period]; ``period`` 0: ``x`` itself.
+
+    Of an ``x`` so far that rounding leaves its image outside, as when a run blows up: the lower end, for what is looked
+    up by this must lie in the box.
+    """
     if period > 0.0:
         x -= period * np.floor((x - lower) / period)
+        if not lower <= x <= lower + period:
+            x = lower
     return x
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from porescale.common.neighbors import PairList
 from porescale.common.neighbors.cells import Grid, cell_of, grid_shape, minimum_image, sort_into_cells, wrapped
 
 
@@ -72,3 +73,22 @@ def test_cells_are_no_smaller_than_asked_and_bounded_in_number():
     columns, rows = grid_shape((0.0, 0.0), (1e6, 1e6), 1e-3, 500)
     assert columns * rows <= 500
     assert grid_shape((0.0, 0.0), (1.0, 1.0), 3.0, 500) == (1, 1)
+
+
+@pytest.mark.parametrize("far", [*(s * 10.0**k for s in (-1, 1) for k in (0, 3, 9, 12, 13, 16, 100, 300))])
+def test_images_lie_in_the_box_however_far_the_point(far):
+    # From 1e13 m on neighbouring numbers are a third of the first period apart.
+    for lower, period in ((0.0, 6e-3), (0.0, 0.7), (-1.0, 0.7)):
+        assert lower <= wrapped.py_func(far, lower, period) <= lower + period
+
+
+def test_rounding_alone_leaves_the_box():
+    far = -1e16 / 3  # neighbouring numbers are half a metre apart
+    assert not 0.0 <= far - 0.7 * np.floor(far / 0.7) <= 0.7  # what was searched before, and crashed
+
+
+def test_pairs_are_found_beside_a_point_that_ran_away():
+    x = np.array([[1e-3, 3e-3], [-1.1201e12, 4.3e6], [1.9e-3, 3e-3]])
+    listed = PairList(3, 1e-4, (0.0, 0.0), (6e-3, 6e-3), periodic=(True, True))
+    listed.build(x, np.full(3, 5e-4))
+    assert 2 in listed.partner[listed.start[0] : listed.start[1]]
