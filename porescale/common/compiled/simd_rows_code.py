@@ -73,7 +73,7 @@ def _take_eight(typing: Any, line: Any, first: Any) -> Any:
     """Signature and code of ``load_eight`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
-        """A load."""
+        """One load, wherever the entry lies."""
         return builder.load(_eight_at(context, builder, line, values), align=line.dtype.bitwidth // 8)
 
     return _eights[line.dtype.bitwidth](line, types.int64), code
@@ -91,7 +91,7 @@ def _put_eight(typing: Any, line: Any, first: Any, values: Any) -> Any:
     """Signature and code of ``store_eight`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, taken: Any) -> Any:
-        """A store."""
+        """One store, wherever the entry lies."""
         builder.store(taken[2], _eight_at(context, builder, line, taken), align=line.dtype.bitwidth // 8)
         return context.get_dummy_value()
 

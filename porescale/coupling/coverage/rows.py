@@ -220,7 +220,7 @@ def rasterize_row(y, rows, patches, motion, periodic_x, scratch):
             m = rows.body[k + AHEAD]
             soon = patches.start[m] + rows.line[k + AHEAD] * patches.stride[m]
             prefetch(patches.fraction, soon)
-            prefetch(patches.fraction, soon + BLOCK // 2)
+            prefetch(patches.fraction, soon + BLOCK)
         n = rows.body[k]
         j = rows.line[k]
         stride = patches.stride[n]

@@ -45,7 +45,7 @@ def four_loads(i, block, line, gained, patches):
 
 @inline
 def block_load(block, line, gained, patches):
-    """All eight."""
+    """Sum of the loads of all eight cells of a block."""
     return add_loads(four_loads(0, block, line, gained, patches), four_loads(1, block, line, gained, patches))
 
 
