@@ -44,7 +44,7 @@ def write_permeability(run: Run, folder: Path) -> list[Path]:
 def measure_window(scene: Scene, grains: Cloud, *, resolved: bool = False) -> Measured:
     """The permeability of the window that a scene names, or of its packing's rectangle, as its lattice has it.
 
-    resolved : with the solid operator for held bodies instead, on a lattice of the same spacing.
+    resolved : with the solid operator for narrow gaps instead, on a lattice of the same spacing.
     """
     assert scene.permeability
     assert scene.fluid
@@ -80,7 +80,7 @@ def row(time: float, ratio: float, found: Measured, resolved: float) -> dict[str
 
     time (s) : of the snapshot whose bed is measured
     permeability (m²) : k of Darcy's law, by a flow that is driven through the bed, as the run's lattice has it
-    permeability, narrow gaps resolved (m²) : the same with the solid operator for held bodies; nan if not steady
+    permeability, narrow gaps resolved (m²) : the same by the solid operator for such gaps; nan if not steady
     permeability over hydraulic diameter² () : the same without unit
     hydraulic radius ratio () : radius that the fluid sees, over that of the grain; 1 where none is given
     hydraulic solid fraction () : of the radii that the fluid sees

@@ -11,8 +11,8 @@ K/R² = C (sqrt(c_max/c) - 1)^(5/2),  square C = 16/(9 pi sqrt 2), c_max = pi/4,
 pi/(2 sqrt 3);  and Kozeny & Carman,  K/R² = (1 - c)³/(4 k c²),  k = 5.  R, d and c are those used in the fluid: lambda
 times the grains'.
 
-Held grains have the solid operator for held bodies unless another is given: gaps of a few cells carry what they should,
-and K is there with half the cells (docs/theory/hydraulic_radius.md).
+Grains have the solid operator for narrow gaps unless another is given: gaps of a few cells carry what they should, and
+K is there with half the cells (docs/theory/hydraulic_radius.md).
 """
 
 import math
@@ -24,7 +24,7 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Reals
-from porescale.coupling.limits import FOR_HELD, RECOMMENDED
+from porescale.coupling.limits import FOR_NARROW_GAPS, RECOMMENDED
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import solid_operator
 from porescale.lbm.boundary.sides import Kind, Sides
@@ -117,12 +117,12 @@ def measure(
     periodic : whether the window is a whole period along x and y;  walls : whether a no-slip wall stands at its lower
     and its upper flank (otherwise the bed goes on like its mirror image);  relaxation_time, laws, solid_laws : of the
     lattice, keyword arguments of ``Fluid`` and ``SaturatedCells``: those of a run show what its bed lets through in it;
-    left out, the solid operator for held bodies.
+    left out, the solid operator for narrow gaps.
 
     Raises InputError for a window without discs or, unless it is periodic, shorter than four diameters; and for a magic
     parameter that the solid operator is not made for.
     """
-    given = {"solid_operator": FOR_HELD} if solid_laws is None else solid_laws
+    given = {"solid_operator": FOR_NARROW_GAPS} if solid_laws is None else solid_laws
     _check_magic(given, laws or {})
     order = [0, 1] if direction == "x" else [1, 0]  # the flow runs along the first axis
     at = (np.asarray(position, float) - lower)[:, order] / spacing

@@ -1,7 +1,7 @@
 """The permeability of a specimen as it stands before its test, on two lattices: what the grid leaves open is measured.
 
-Flow along y through the whole periodic cell, discs with the radius used in the fluid, lambda times theirs, held: by the
-solid operator for that (permeability.py).  The error of the lattice falls at second order or faster, so that it is at
+Flow along y through the whole periodic cell, discs with the radius used in the fluid, lambda times theirs, by the solid
+operator for narrow gaps (permeability.py).  The error of the lattice falls at second order or faster, so that it is at
 most a third of what half the cells change, but for the places of grains in their cells: 0.4 % of a hundred of them at
 8 and 12 cells, lambda 0.8.  How K follows lambda is
 measured on the coarser one, with discs larger by STEP: K ~ lambda^exponent; no number where these seal the pores.
@@ -11,7 +11,7 @@ import math
 
 from porescale.analysis.permeability import Measured, measure
 from porescale.common.core.types import Floats
-from porescale.coupling.limits import FOR_HELD, RECOMMENDED
+from porescale.coupling.limits import FOR_NARROW_GAPS, RECOMMENDED
 
 ORDER = 2
 STEP = 0.02
@@ -47,10 +47,10 @@ def exponent(coarse: Measured, wider: Measured) -> float:
     return math.log(ratio) / math.log1p(STEP) if flows else math.nan
 
 
-def _through(position: Floats, radius: Floats, side: float, cells: float, solid_operator: str = FOR_HELD) -> Measured:
+def _through(position: Floats, radius: Floats, side: float, cells: float, operator: str = FOR_NARROW_GAPS) -> Measured:
     """Permeability on the lattice nearest to ``cells`` per diameter that the cell holds whole."""
     spacing = side / round(side * cells / (2.0 * float(radius.mean())))
     return measure(
         position, radius, (0.0, 0.0), (side, side), spacing, direction="y", periodic=(True, True),
-        solid_laws={"solid_operator": solid_operator},
+        solid_laws={"solid_operator": operator},
     )  # fmt: skip

@@ -28,8 +28,8 @@ HELD_ONLY = tuple(name for name, operator in SOLID_OPERATORS.items() if operator
 """Solid operators with which free discs run away."""
 RECOMMENDED = next(iter(SOLID_OPERATORS))
 """The solid operator to take instead."""
-FOR_HELD = next(name for name, operator in SOLID_OPERATORS.items() if operator.free_refused)
-"""The solid operator for bodies that are held, which has narrow gaps right."""
+FOR_NARROW_GAPS = next(name for name, operator in SOLID_OPERATORS.items() if operator.narrow_gaps)
+"""The solid operator for gaps of few cells."""
 _ON_THE_MAP = {f"{name} {weight}": holds for name, it in SOLID_OPERATORS.items() for weight, holds in it.holds.items()}
 LIGHTEST = {pair: holds.lightest for pair, holds in _ON_THE_MAP.items()}
 """By solid operator and weight: cells per diameter, and the density ratio from which on free discs hold."""
