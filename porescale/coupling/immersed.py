@@ -19,7 +19,8 @@ step, d' = -d - rho dv, and the load is 2 d a cell.  It moves a body of density 
 d' = -(1 + 2/s) d grows whatever s is, and with a virtual mass too.  With a share p of the step's load and 1 - p of that
 before it, dv = 2 (p d + (1 - p) d_before)/s, the roots of x² + (1 + 2p/s) x + 2 (1 - p)/s = 0 are within 1 where
 p < 1/2 and s > 2 (1 - p); for lighter ones the virtual mass is raised until m_p + m_v is some mass of the fluid inside,
-which all answers.  These are NOW and INSIDE.  What is still under way is momentum, 1 - p of the last load.
+which all answers.  These are NOW and INSIDE; from HEAVY on p = 1/2, with roots -1 and -1/s.  What is still under way is
+momentum, 1 - p of the last load.
 """
 
 from typing import Any, NamedTuple
@@ -36,6 +37,8 @@ LAYER = 0.75
 of density ratio 0.3 run away at 6 cells per diameter, 0.2 at 10, 0.1 at 16."""
 NOW = 0.45
 """Share p of a step's load that acts in it where full cells turn populations back: 1/2 and more damps nothing."""
+HEAVY = 10.0
+"""Density ratio from which on p is 1/2: such a body hardly damps the change of sign; its load is free of it then."""
 INSIDE = 1.5
 """Least m_p + m_v over the mass of the fluid inside, there, and of moments of inertia: with 1 a disc of density ratio
 0.8, shot at Mach 0.1 at tau 0.505, runs away."""
@@ -86,15 +89,15 @@ def to_lattice(position, velocity, spin, spacing, step, centre, lattice_velocity
 
 @kernel
 def part_of_two_steps(force, torque, now, under_way, acting):
-    """Load that acts in a step: a share ``now`` of its own, and what is under way.
+    """Load that acts in a step: a share ``now`` (n,) of its own, and what is under way.
 
     force (n, 2), torque (n,): of the step.  Overwrites acting (n, 3), and under_way (n, 3) with what comes next.
     """
     for n in range(torque.shape[0]):
         for a in range(3):
             own = force[n, a] if a < 2 else torque[n]
-            acting[n, a] = now * own + under_way[n, a]
-            under_way[n, a] = (1.0 - now) * own
+            acting[n, a] = now[n] * own + under_way[n, a]
+            under_way[n, a] = (1.0 - now[n]) * own
 
 
 @kernel
@@ -134,8 +137,6 @@ class Immersed:
     under_way (n, 3) lattice units: what of the cells' last load acts with the next step, 0 unless ``turns_back``.
     """
 
-    turns_back = False
-
     def __init__(
         self, mass: Reals, inertia: Reals, velocity: Reals, spin: Reals, weight: Reals, response_share: Reals
     ) -> None:
@@ -148,16 +149,21 @@ class Immersed:
         self.fluid_force, self.fluid_torque = np.zeros((n, 2)), np.zeros(n)
         self.push = np.zeros((n, 2))
         self.force, self.torque = np.zeros((n, 2)), np.zeros(n)
-        self.under_way, self._acting = np.zeros((n, 3)), np.zeros((n, 3))
+        self.under_way, self._acting, self._now = np.zeros((n, 3)), np.zeros((n, 3)), np.ones(n)
+        self.turns_back = False
         self._inner = InnerFluid(
             self.inner_mass, self.inner_inertia, self.inner_velocity, self.inner_spin, self.inner_momentum
         )
         self._load = BodyLoad(self.fluid_force, self.fluid_torque, self.force, self.torque)
 
+    def turn_back(self, ratio: Reals) -> None:
+        """From now on a part of two steps' loads acts;  ratio (n,): mass over that of the fluid inside."""
+        self.turns_back, self._now[: len(ratio)] = True, np.where(ratio < HEAVY, NOW, 0.5)
+
     def respond(self, cells: CellLoad, units: Reals, velocity: Reals, spin: Reals, step: float) -> None:
         """The loads of a fluid step, from the cells' sums and the bodies' motion (m/s, rad/s); step: s."""
         if self.turns_back:
-            part_of_two_steps(cells.force, cells.torque, NOW, self.under_way, self._acting)
+            part_of_two_steps(cells.force, cells.torque, self._now, self.under_way, self._acting)
             cells = CellLoad(self._acting[:, :2], self._acting[:, 2], cells.entrained)
         total_load(
             cells, units, velocity, spin, (self.weight, self.push), self.response_share, step, self._inner, self._load

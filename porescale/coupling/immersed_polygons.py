@@ -106,7 +106,8 @@ class ImmersedPolygons(Immersed):
         super().__init__(
             inner_mass, inner_inertia, clumps.velocity[self.first :], clumps.spin[self.first :], weight, share
         )
-        self.turns_back = least > 0.0
+        if least > 0.0:
+            self.turn_back(mass / inner_mass)
         self._no_torque = np.zeros(len(mass))
 
     @property

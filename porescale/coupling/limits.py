@@ -34,8 +34,8 @@ _ON_THE_MAP = {f"{name} {weight}": holds for name, it in SOLID_OPERATORS.items()
 TURNING_BACK = tuple(name for name, operator in SOLID_OPERATORS.items() if operator.turns_back)
 """Solid operators that free bodies of this density ratio and more are verified to hold with."""
 LIGHT = 1.0
-"""At tau 0.8 discs of a tenth hold with them, too (coupling.fall); at tau 0.51 one of 0.3 runs away when shot at Mach 0.1
-(coupling.fly), at 0.55 one of 0.5 after 8000 steps in an array of solid fraction 0.4."""
+"""At tau 0.8 discs of a tenth hold with them, too (coupling.fall); at tau 0.51 one of 0.3 runs away when shot at Mach
+0.1 (coupling.fly), at 0.55 one of 0.5 after 8000 steps in an array of solid fraction 0.4."""
 LIGHTEST = {pair: holds.lightest for pair, holds in _ON_THE_MAP.items()}
 """By solid operator and weight: cells per diameter, and the density ratio from which on free discs hold."""
 CELLS_RIGHT = {pair: holds.cells for pair, holds in _ON_THE_MAP.items()}

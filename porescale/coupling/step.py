@@ -111,7 +111,9 @@ class Coupled:
         share = np.ones((discs.count, 2))
         share[seen] = response_share(self.grains, inside, LAYER * self.scales.spacing, seen, self._least)
         self.immersed = it = Immersed(mass, inertia, discs.velocity, discs.spin, weight, share)
-        it.turns_back = self._least > 0.0
+        if self._least > 0.0:
+            whole = of_whole_bodies(self.grains, discs.mass, discs.inertia)[0]
+            it.turn_back(whole[seen] / of_whole_bodies(self.grains, inside.mass, inside.inertia)[0][seen])
         self.weight, self.response_share = it.weight, it.response_share
         self.inner_mass, self.inner_inertia, self.inner_momentum = it.inner_mass, it.inner_inertia, it.inner_momentum
         self.inner_velocity, self.inner_spin = it.inner_velocity, it.inner_spin

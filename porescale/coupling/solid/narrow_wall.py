@@ -37,7 +37,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.entry import SolidOperator
+from porescale.coupling.solid.entry import Holds, SolidOperator
 from porescale.coupling.solid.exact_wall import blend_wall, collide_with_wall, momentum_to_wall, whole_cell
 from porescale.coupling.solid.law import (
     blend,
@@ -108,5 +108,6 @@ SOLID_OPERATOR = SolidOperator(
     longest_relaxation_time=2.0,
     magic=MAGIC_MIDWAY_WALL,
     narrow_gaps=True,
+    holds={"narrow": Holds(lightest=((5.0, 0.1), (3.0, 0.2)), cells=5.0, bed=((0.6, 5.0), (0.7, 10.0)))},
     order=5,
 )
