@@ -44,12 +44,12 @@ def cuda() -> Any:
     warnings.filterwarnings("ignore", SMALL_GRID, import_module("numba.core.errors").NumbaPerformanceWarning)
     found = import_module("numba.cuda")
     if not simulated():
-        nvvm = import_module("numba.cuda.cudadrv.nvvm")
+        nvvm: Any = import_module("numba.cuda.cudadrv.nvvm")
         nvvm.compile_ir = partial(nvvm.compile_ir, fma=False)
     return found
 
 
-def jit(**options: Any) -> Callable[[FunctionType], Any]:
+def jit(**options: Any) -> Callable[[Any], Any]:
     """numba's ``cuda.jit``, whose code rounds after every operation, as the CPU's does, but for ``fma``.
 
     Without optimisation at the link: there products would be fused once more.
