@@ -83,18 +83,13 @@ def side_by_side(all_of: Mapping[str, Any], goal: Goal, place: Path, jobs: int, 
     running = {}
     for job, folder in enumerate(folders):
         (folder / "kills.json").unlink(missing_ok=True)
-        if (number := os.fork()) == 0:
-            code = 1
-            try:
-                for name, each in all_of.items():
-                    each.apart(folder / name, goal.seed + job)
-                rounds(all_of, goal.share(job, jobs), folder)
-                code = 0
-            except BaseException:
-                traceback.print_exc()
-            finally:
-                os._exit(code)
-        running[number] = job
+
+        def work(job: int = job, folder: Path = folder) -> None:
+            for name, each in all_of.items():
+                each.apart(folder / name, goal.seed + job)
+            rounds(all_of, goal.share(job, jobs), folder)
+
+        running[forked(work)] = job
     lost = []
     while running:
         time.sleep(LOOK)
@@ -108,6 +103,21 @@ def side_by_side(all_of: Mapping[str, Any], goal: Goal, place: Path, jobs: int, 
         write_text(place / "kills.json", json.dumps(said, indent=1))
         tell(said)
     return said
+
+
+def forked(work: Callable[[], object]) -> int:
+    """Number of a process forked from this one that does some work and ends, with 1 where that raised."""
+    number = os.fork()
+    if number == 0:
+        code = 1
+        try:
+            work()
+            code = 0
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            os._exit(code)
+    return number
 
 
 def together(folders: list[Path], seed: int) -> dict[str, Any]:

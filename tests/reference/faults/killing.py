@@ -26,6 +26,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -205,9 +206,10 @@ class Child:
 
 
 class Campaign:
-    """Kills runs of ``scene`` in ``place``, by the dice of ``seed``."""
+    """Kills runs of ``scene`` in ``place``, by the dice of ``seed``.  made : another process has made what nobody kills
+    there, and compiled what it needs."""
 
-    def __init__(self, name: str, place: Path, seed: int) -> None:
+    def __init__(self, name: str, place: Path, seed: int, made: bool = False) -> None:
         self.package, values = SCENES[name]
         self.name, self.place, self.dice = name, place, random.Random(f"{name} {seed}")
         place.mkdir(parents=True, exist_ok=True)
@@ -217,7 +219,7 @@ class Campaign:
         self.kills: Counter[str] = Counter()
         self.finals, self.pictured = 0, True
         self.warm()
-        for pictured, folder in self.untouched.items():
+        for pictured, folder in () if made else self.untouched.items():
             self.pictured = pictured
             shutil.rmtree(folder, ignore_errors=True)
             assert self.child(folder).wait() == 0
@@ -366,7 +368,11 @@ def main() -> int:
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
     options = parser.parse_args()
     goal = kill_jobs.Goal(options.kills, options.cold, time.monotonic(), options.seconds, options.seed)
-    all_of = {name: Campaign(name, options.out / name, options.seed) for name in options.scenes}
+    begin = [partial(Campaign, name, options.out / name, options.seed) for name in options.scenes]
+    if at_once := options.jobs > 1:
+        for number in [kill_jobs.forked(one) for one in begin]:
+            assert ended(number, COLD_PATIENCE) == 0, "a scene that nobody kills has ended badly"
+    all_of = {name: one(at_once) for name, one in zip(options.scenes, begin, strict=True)}
     seeds = str(options.seed) + (f" to {options.seed + options.jobs - 1}" if options.jobs > 1 else "")
 
     def tell(said: dict[str, Any]) -> None:
