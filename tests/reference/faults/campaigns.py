@@ -54,5 +54,8 @@ def with_table(text: str, rows: list[dict[str, Any]]) -> str:
 
 
 if __name__ == "__main__":
-    for one in json.loads(Path(sys.argv[1]).read_text(encoding="utf-8")):
+    here, there = (
+        json.loads(Path(file).read_text(encoding="utf-8")) for file in (DOCS / "campaigns.json", sys.argv[1])
+    )
+    for one in (row for row in there if row not in here):
         add(one if one["commit"] else one | {"commit": made_at()["commit"]})  # there it was no checkout

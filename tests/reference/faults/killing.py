@@ -27,6 +27,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -227,7 +228,8 @@ class Campaign:
         self.steps = read_header(self.untouched[True] / "checkpoint.h5")["step"]
 
     def warm(self) -> None:
-        """Load what all children need, in this process."""
+        """Load what all children need, in this process: kernels, and matplotlib, a third of a child's time."""
+        import_module("porescale.common.page.page")
         package = _package(self.package)
         model = package.build(load(self.scene, package.scene()))
         model.advance(2)
