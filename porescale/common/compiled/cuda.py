@@ -33,7 +33,8 @@ WARP = 32
 SIMULATOR = "numba's simulator"
 
 SMALL_GRID = r"(?s).*Grid size \d+ will likely result in GPU under-utilization"
-"""How numba warns of a launch below 128 blocks, whatever colours go before: rows of bodies and links are few."""
+"""How numba warns of a launch below 128 blocks, whatever colours go before: rows of bodies and links are few.  Of any
+category, since numba-cuda and numba have each its own."""
 STREAM_PER_THREAD = "NUMBA_CUDA_PER_THREAD_DEFAULT_STREAM", "CUDA_PYTHON_CUDA_PER_THREAD_DEFAULT_STREAM"
 """Variables by which the stream 0 no longer waits for others, nor they for it: see ``launch``."""
 
@@ -41,20 +42,22 @@ STREAM_PER_THREAD = "NUMBA_CUDA_PER_THREAD_DEFAULT_STREAM", "CUDA_PYTHON_CUDA_PE
 @cache
 def cuda() -> Any:
     """numba's CUDA module, that no longer warns of small grids, and fuses no product with a sum."""
-    warnings.filterwarnings("ignore", SMALL_GRID, import_module("numba.core.errors").NumbaPerformanceWarning)
     found = import_module("numba.cuda")
+    warnings.filterwarnings("ignore", SMALL_GRID)
     if not simulated():
         nvvm: Any = import_module("numba.cuda.cudadrv.nvvm")
         nvvm.compile_ir = partial(nvvm.compile_ir, fma=False)
     return found
 
 
-def jit(**options: Any) -> Callable[[Any], Any]:
-    """numba's ``cuda.jit``, whose code rounds after every operation, as the CPU's does, but for ``fma``.
+def jit(function: Any, **options: Any) -> Any:
+    """The function compiled by numba's ``cuda.jit``: its code rounds after every operation, as the CPU's does, but for
+    ``fma``.
 
-    Without optimisation at the link: there products would be fused once more.
+    Without optimisation at the link, which would fuse products with sums once more.  Given with its function, since
+    numba-cuda 0.30 forgets the option where it decorates.
     """
-    return cuda().jit(**options, **({} if simulated() else {"lto": False}))  # type: ignore[no-any-return]
+    return cuda().jit(function, **options, **({} if simulated() else {"lto": False}))
 
 
 def simulated() -> bool:
@@ -151,7 +154,7 @@ def _device_kernel(function: FunctionType, law: Laws, real: type) -> Any:
 
     law : of the law functions that it calls;  real : np.float32 or np.float64, of ``precision_constants``.
     """
-    return jit()(_for_device(function, law, real))
+    return jit(_for_device(function, law, real))
 
 
 device_kernel: Any = cache(_device_kernel)
@@ -161,7 +164,7 @@ device_kernel: Any = cache(_device_kernel)
 @cache
 def device_function(function: FunctionType, law: Laws, real: type) -> Any:
     """The device function of a function in plain Python, for a law, or several, and a precision."""
-    return jit(device=True)(_for_device(function, law, real))
+    return jit(_for_device(function, law, real), device=True)
 
 
 def launch(compiled: Any, count: int, block: int, *arguments: Any, stream: Any = 0) -> None:
@@ -216,7 +219,7 @@ def _meaning(value: Any, law: Laws, real: type) -> Any:
     if value is grid:
         return _numbered()
     if value is unchecked_view:  # its plain form; inlined, since no device function may return a slice
-        return jit(device=True, inline="always")(value)
+        return jit(value, device=True, inline="always")
     if value is simd.fma and not simulated():
         return _device_fma()
     if getattr(value, "__module__", "") == simd.__name__ and not simulated():  # of numbers: a thread has no lanes
@@ -253,13 +256,13 @@ def _numpy() -> ModuleType:
 @cache
 def _numbered() -> Any:
     """Device function that gives the number of the thread."""
-    return jit(device=True)(FunctionType(_thread.__code__, {"cuda": cuda()}, "thread"))
+    return jit(FunctionType(_thread.__code__, {"cuda": cuda()}, "thread"), device=True)
 
 
 @cache
 def _device_fma() -> Any:
     """Device function for ``fma``."""
-    return jit(device=True)(FunctionType(_fused.__code__, {"cuda": cuda()}, "fused"))
+    return jit(FunctionType(_fused.__code__, {"cuda": cuda()}, "fused"), device=True)
 
 
 def _fused(a: Any, b: Any, c: Any) -> Any:

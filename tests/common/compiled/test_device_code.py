@@ -32,7 +32,7 @@ def _on_a_device(monkeypatch):
     """numba's compiler for a GPU takes every function as it is."""
     monkeypatch.setattr(cuda, "simulated", lambda: False)
     monkeypatch.setattr(cuda, "cuda", SimpleNamespace)
-    monkeypatch.setattr(cuda, "jit", lambda **_: lambda function: function)
+    monkeypatch.setattr(cuda, "jit", lambda function, **_: function)
     for it in CACHED:
         it.cache_clear()
     yield
