@@ -143,8 +143,9 @@ def endure(it: Endurance, steps: int, say: Say = lambda text: None, kept: Path |
                 _keep(kept, steps, run, replace(noted, seconds=seconds()))
                 saved = time.perf_counter()
         noted.note(run.read())
-        left = seconds() / max(mark, 1) * (MARKS - mark)
-        say(f"{it.name}: {noted.done} of {steps} steps, about {left:.0f} s left")
+        if mark:
+            left = seconds() / mark * (MARKS - mark)
+            say(f"{it.name}: {noted.done} of {steps} steps, about {left:.0f} s left")
 
     def line(name: str, allowed: float, because: str, first: int = it.settles) -> Line:
         """The verdict on one quantity: how far its values leave the first that counts, against ``allowed``."""
