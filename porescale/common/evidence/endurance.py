@@ -6,7 +6,7 @@ the first mark that counts, and a reason for it.  The peak of the process's memo
 and nothing must be found wrong: that is checked as often as in a run.
 
 A flow may go on in another process: it is kept in a file of its own now and then, and then ends with the same numbers.
-Seconds add up; the peak of memory is the largest of all its processes, so that growth counts within each alone.
+Seconds add up, and so does what the peak of memory grew by in each process, from its first mark on.
 """
 
 import json
@@ -111,9 +111,12 @@ class Noted:
     seen: dict[str, list[float]]
     seconds: float
 
-    def note(self, values: Mapping[str, float]) -> None:
-        """Add the values at a mark, with what was found wrong and memory by then."""
-        memory = max([peak_bytes() / 2**20, *self.seen.get(MEMORY, [])])
+    def note(self, values: Mapping[str, float], peak: float, last: float | None) -> None:
+        """Add the values at a mark, with what was found wrong and memory by then.
+
+        peak, last : MiB of this process now and at its mark before, None at its first
+        """
+        memory = self.seen.get(MEMORY, [peak])[-1] + (0.0 if last is None else peak - last)
         for name, value in {**values, FOUND: self.wrong, MEMORY: memory}.items():
             self.seen.setdefault(name, []).append(float(value))
 
@@ -135,14 +138,16 @@ def endure(it: Endurance, steps: int, say: Say = lambda text: None, kept: Path |
         """Seconds of all processes, as they are written."""
         return round(noted.seconds + time.perf_counter() - begun, 3)
 
-    saved = begun
+    saved, last = begun, None
     for mark in range(len(noted.seen.get(FOUND, [])), MARKS + 1):
         while noted.done < marks[mark]:
             noted.done += _block(run, noted, min(CHECK_EVERY, marks[mark] - noted.done), say)
             if kept is not None and time.perf_counter() - saved > KEEP_EVERY:
                 _keep(kept, steps, run, replace(noted, seconds=seconds()))
                 saved = time.perf_counter()
-        noted.note(run.read())
+        peak = peak_bytes() / 2**20
+        noted.note(run.read(), peak, last)
+        last = peak
         if mark:
             left = seconds() / mark * (MARKS - mark)
             say(f"{it.name}: {noted.done} of {steps} steps, about {left:.0f} s left")

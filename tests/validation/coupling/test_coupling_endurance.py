@@ -137,6 +137,20 @@ def test_faults_seconds_and_memory_of_all_processes_count(tmp_path, monkeypatch)
     assert not memory.holds
 
 
+def test_growth_of_all_processes_adds_up_and_what_they_begin_with_does_not_count(tmp_path, monkeypatch):
+    monkeypatch.setattr(common, "KEEP_EVERY", 0.0)
+    it, kept = Endurance("counter", "counts", Counter, ()), tmp_path / "kept.h5"
+    for begins_with in (100, 500):  # MiB; grows by one at every mark
+        peaks = iter(range(begins_with, 1000))
+        monkeypatch.setattr(common, "peak_bytes", lambda peaks=peaks: next(peaks) * 2**20)
+        if begins_with == 100:
+            killed(it, 1000, kept, 9)  # kept at mark 9, before that was noted
+    memory = endure(it, 1000, kept=kept)[-1]
+    assert memory.values == [*map(float, range(100, 109)), *map(float, range(108, 120))]
+    assert memory.off == 18.0  # 19 from mark 1 to 20, less one where the second process began
+    assert not memory.holds
+
+
 def test_what_is_kept_of_another_number_of_steps_begins_anew(tmp_path):
     it, kept = Endurance("counter", "counts", Counter, ()), tmp_path / "kept.h5"
     endure(it, 500, kept=kept)
