@@ -142,7 +142,9 @@ def endure(it: Endurance, steps: int, say: Say = lambda text: None, kept: Path |
     for mark in range(len(noted.seen.get(FOUND, [])), MARKS + 1):
         while noted.done < marks[mark]:
             noted.done += _block(run, noted, min(CHECK_EVERY, marks[mark] - noted.done), say)
-            if kept is not None and time.perf_counter() - saved > KEEP_EVERY:
+            # Not at a mark: a process that goes on has advanced by its first one, and loaded what it needs.
+            due = noted.done < marks[mark] and time.perf_counter() - saved > KEEP_EVERY
+            if kept is not None and due:
                 _keep(kept, steps, run, replace(noted, seconds=seconds()))
                 saved = time.perf_counter()
         peak = peak_bytes() / 2**20
@@ -185,7 +187,7 @@ def _keep(kept: Path, steps: int, run: Lasting, noted: Noted) -> None:
 def _taken_up(kept: Path, steps: int, run: Lasting, start: Noted) -> Noted:
     """What was noted of the flow in a file, which ``run`` goes on from; what is there of other steps begins anew.
 
-    The first process reads what it has just written, so that its memory holds what that of the others does.
+    Every process writes and reads it first, so that its memory holds from the start what that takes.
     """
     if not kept.exists() or read_checkpoint(kept, skip="state").get("steps") != steps:
         _keep(kept, steps, run, start)
@@ -194,7 +196,9 @@ def _taken_up(kept: Path, steps: int, run: Lasting, start: Noted) -> Noted:
         repair = "remove the file, and the flow begins anew"
         raise InputError(Fault("unfinished flow", str(kept), f"does not fit this version ({wrong})", repair=repair))
     run.restore(content["state"])
-    return Noted(**content["noted"])
+    noted = Noted(**content["noted"])
+    _keep(kept, steps, run, noted)
+    return noted
 
 
 class Endurances(Register[Endurance]):

@@ -29,6 +29,7 @@ def test_before_it_has_consolidated_its_pressure_moves():  # the twin that must 
 @pytest.mark.parametrize("name", [it.name for it in ENDURANCES])
 def test_kept_and_gone_on_with_it_ends_with_the_same_numbers(name, tmp_path, monkeypatch):
     monkeypatch.setattr(endurance, "KEEP_EVERY", 0.0)
+    monkeypatch.setattr(endurance, "CHECK_EVERY", 7)  # blocks between marks are kept
     it, kept = replace(ENDURANCES[name], share=1.0, before=120), tmp_path / "kept.h5"
 
     class Killed(Exception):
