@@ -112,14 +112,12 @@ def flows(beds: Sequence[Bed]) -> list[Compared]:
 
 
 def specimens() -> tuple[Floats, Floats]:
-    """Porosity, and K (m²) at half the cells, of each packing that material.toml was measured of.
-
-    What half the cells change is three times the error of the lattice, a method of second order; K falls with more
-    cells, as cases/permeameter has it.
-    """
+    """Porosity, and the K (m²) that beds of free grains have at half the cells, of each packing that material.toml was
+    measured of."""
     measured = tomllib.loads((HERE / "material.toml").read_text(encoding="utf-8"))["measured"]
-    n, k, off = (np.array(measured[it]["values"]) for it in ("porosity", "permeability", "lattice_error"))
-    return n, k * (1.0 + 3.0 * off)
+    names = "porosity", "permeability", "excess_with_free_grains_at_half_the_cells"
+    n, k, more = (np.array(measured[it]["values"]) for it in names)
+    return n, k * (1.0 + more)
 
 
 def strength() -> tuple[float, Floats]:

@@ -81,6 +81,14 @@ class Tank:
             row |= table
         return {name: row[column] for name, column in self._names.items()}
 
+    def state(self) -> dict[str, Any]:
+        """All it takes to go on bit for bit."""
+        return self.model.state()
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on from a state of the same start."""
+        self.model.restore(state)
+
 
 class Box:
     """What is read of a periodic box of water without weight: mass, and momentum."""
@@ -103,6 +111,14 @@ class Box:
         layer, n = self.flow.layer, self.flow.layer.fluid
         x, y = (layer.mass[:n, None] * layer.v[:n]).sum(axis=0) / self._size
         return {MASS: float(layer.mass[:n].sum())} | dict(zip(MOMENTUM, (float(x), float(y)), strict=True))
+
+    def state(self) -> dict[str, Any]:
+        """All it takes to go on bit for bit."""
+        return self.flow.state()
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on from a state of the same start."""
+        self.flow.restore(state)
 
 
 MASS, LEVEL, FASTEST, MOVED = "mass (kg/m)", "mean height (m)", "fastest (m/s)", "largest displacement (m)"

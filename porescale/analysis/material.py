@@ -26,7 +26,7 @@ UNITS = {
     "critical dilatancy angle": "rad", "critical porosity": "", "stiffness": "Pa", "Poisson's ratio": "",
     "permeability": "m^2",
     "permeability over hydraulic diameter squared": "", "hydraulic solid fraction": "", "lattice error": "",
-    "exponent of lambda": "", "independent critical values": "",
+    "exponent of lambda": "", "excess with free grains at half the cells": "", "independent critical values": "",
 }  # fmt: skip
 """Of every number, in the order of tables."""
 OWN_LENGTHS = {"permeability": 0.0, "permeability over hydraulic diameter squared": 2.0}

@@ -10,6 +10,9 @@ Compared to  Gebart 1992, flow across regular arrays of cylinders of solid fract
 K/R² = C (sqrt(c_max/c) - 1)^(5/2),  square C = 16/(9 pi sqrt 2), c_max = pi/4,  hexagonal 16/(9 pi sqrt 6) and
 pi/(2 sqrt 3);  and Kozeny & Carman,  K/R² = (1 - c)³/(4 k c²),  k = 5.  R, d and c are those used in the fluid: lambda
 times the grains'.
+
+Grains have the solid operator for narrow gaps unless another is given: gaps of a few cells carry what they should, and
+K is there with half the cells (docs/theory/hydraulic_radius.md).
 """
 
 import math
@@ -21,7 +24,9 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Reals
+from porescale.coupling.limits import FOR_NARROW_GAPS, RECOMMENDED
 from porescale.coupling.psm import SaturatedCells
+from porescale.coupling.solid.choose import solid_operator
 from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
@@ -111,10 +116,14 @@ def measure(
     lower, upper : corners of the window, m;  spacing : of the lattice, m;  direction : of the flow, "x" or "y";
     periodic : whether the window is a whole period along x and y;  walls : whether a no-slip wall stands at its lower
     and its upper flank (otherwise the bed goes on like its mirror image);  relaxation_time, laws, solid_laws : of the
-    lattice, keyword arguments of ``Fluid`` and ``SaturatedCells``: those of a run show what its bed lets through in it.
+    lattice, keyword arguments of ``Fluid`` and ``SaturatedCells``: those of a run show what its bed lets through in it;
+    left out, the solid operator for narrow gaps.
 
-    Raises InputError for a window without discs or, unless it is periodic, shorter than four diameters.
+    Raises InputError for a window without discs or, unless it is periodic, shorter than four diameters; and for a magic
+    parameter that the solid operator is not made for.
     """
+    given = {"solid_operator": FOR_NARROW_GAPS} if solid_laws is None else solid_laws
+    _check_magic(given, laws or {})
     order = [0, 1] if direction == "x" else [1, 0]  # the flow runs along the first axis
     at = (np.asarray(position, float) - lower)[:, order] / spacing
     size = (np.asarray(radius, float)) / spacing
@@ -145,11 +154,21 @@ def measure(
         length if whole[0] else 2 * length, cells[1], relaxation_time, force=(SLOWNESS * nu, 0.0),
         sides=Sides("periodic", "periodic", low, high), **(laws or {}),
     )  # fmt: skip
-    wet = SaturatedCells(fluid, size, **(solid_laws or {}))
+    wet = SaturatedCells(fluid, size, **given)
     k, share, steady = _flow(fluid, wet, at, length, margin)
     return Measured(
         k * spacing**2, k / across**2, share, across * spacing, across, steady, fluid.step,
     )  # fmt: skip
+
+
+def _check_magic(solid_laws: Mapping[str, Any], laws: Mapping[str, Any]) -> None:
+    """Refuse a magic parameter that the solid operator is not made for: K of narrow gaps would be some 10 % off."""
+    name = solid_laws.get("solid_operator", RECOMMENDED)
+    made_for = solid_operator(name).magic
+    if made_for is not None and laws.get("magic", made_for) != made_for:
+        problem = f"is not what the solid operator {name!r} is made for"
+        repair = "leave it out, or name another solid_operator in solid_laws"
+        raise InputError(Fault("laws.magic", laws["magic"], problem, allowed=f"{made_for:g}", repair=repair))
 
 
 def _flow(fluid: Fluid, wet: SaturatedCells, at: Reals, length: int, margin: int) -> tuple[float, float, bool]:

@@ -2,6 +2,7 @@
 may sleep."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -66,6 +67,14 @@ class Watched:
             "highest grain (diameters)": float((discs.position[:, 1] + discs.radius).max()) / diameter,
             "fastest grain (cells/step)": speed,
         }  # fmt: skip
+
+    def state(self) -> dict[str, Any]:
+        """All it takes to go on bit for bit."""
+        return self.coupled.state()
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on from a state of the same start."""
+        self.coupled.restore(state)
 
 
 ASLEEP = "grains asleep ()"

@@ -174,8 +174,9 @@ def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
     from porescale.analysis.soil_pores import STEP, flow_numbers
     from porescale.common.core.atomic import write_text
     from porescale.common.record.open_run import open_run
+    from porescale.coupling.limits import FOR_NARROW_GAPS
 
-    kept, of = folder / PORES, {"lambda": ratio, "cells": cells, "step": STEP}
+    kept, of = folder / PORES, {"lambda": ratio, "cells": cells, "step": STEP, "operator": FOR_NARROW_GAPS}
     try:
         known = json.loads(kept.read_text(encoding="utf-8"))
         if known["of"] == of:

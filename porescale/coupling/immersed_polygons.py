@@ -88,7 +88,8 @@ class ImmersedPolygons(Immersed):
     Raises InputError at a frame that is no convex polygon, or whose centre of mass is off.
     """
 
-    def __init__(self, grains: Grains, scales: Scales, acceleration: tuple[float, float]) -> None:
+    def __init__(self, grains: Grains, scales: Scales, acceleration: tuple[float, float], least: float) -> None:
+        """least : answering mass over that of the fluid inside (immersed.py); not 0: loads are those of two steps."""
         clumps = clumps_of(grains)
         assert clumps is not None
         self._grains = grains
@@ -100,10 +101,13 @@ class ImmersedPolygons(Immersed):
         mass, inertia = clumps.mass[self.first :], clumps.inertia[self.first :]
         weight = (mass - inner_mass)[:, None] * np.asarray(acceleration, float)
         around = scales.density * (LAYER * scales.spacing) * np.array([_outline_moments(each) for each in corners])
+        around = np.maximum(around, least * np.column_stack((inner_mass, inner_inertia)))
         share = np.minimum(1.0, np.column_stack((mass, inertia)) / around)
         super().__init__(
             inner_mass, inner_inertia, clumps.velocity[self.first :], clumps.spin[self.first :], weight, share
         )
+        if least > 0.0:
+            self.turn_back(mass / inner_mass)
         self._no_torque = np.zeros(len(mass))
 
     @property
@@ -141,6 +145,7 @@ class ImmersedPolygons(Immersed):
         ):
             distribute_load(self.first, clumps.start, clumps.member, mass, clumps.mass, own, turning, rows, turns)
 
-    def momentum(self, step: float) -> Floats:
-        """What polygons add to the conserved momentum beside their own: virtual masses, less the fluid inside, (2,)."""
-        return np.asarray(self.virtual_momentum(step) - self.inner_momentum.sum(axis=0))
+    def momentum(self, units: Floats, step: float) -> Floats:
+        """What polygons add to the conserved momentum beside their own: virtual masses and load under way, less the
+        fluid inside, (2,)."""
+        return np.asarray(self.virtual_momentum(units, step) - self.inner_momentum.sum(axis=0))

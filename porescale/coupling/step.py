@@ -23,10 +23,11 @@ from porescale.coupling.coverage.overlap import overlapping
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.coverage.ring import Ring
 from porescale.coupling.displaced import Displaced, displaced, of_whole_bodies
-from porescale.coupling.immersed import LAYER, CellLoad, Immersed, to_lattice
+from porescale.coupling.immersed import INSIDE, LAYER, CellLoad, Immersed, to_lattice
 from porescale.coupling.immersed_polygons import ImmersedPolygons, corners_of
 from porescale.coupling.lubrication import CELLS, Lubrication
 from porescale.coupling.psm import SaturatedCells
+from porescale.coupling.solid.choose import solid_operator as solid_operator_of
 from porescale.dem.grains import Grains
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
@@ -74,7 +75,8 @@ class Coupled:
         self._seen = seen = slice(discs.count - corners_of(grains))  # the discs that are no corners
         self.hydraulic_radius = hydraulic_ratio * discs.radius
         self.hydraulic_radius[seen.stop :] = 0.0
-        self.polygons = ImmersedPolygons(grains, scales, acceleration) if seen.stop < discs.count else None
+        self._least = INSIDE if solid_operator_of(solid_operator).turns_back else 0.0
+        self.polygons = ImmersedPolygons(grains, scales, acceleration, self._least) if seen.stop < discs.count else None
         self.saturated = cells_of(fluid)(
             fluid, self.hydraulic_radius[seen] / scales.spacing, solid_operator=solid_operator, weighting=weighting,
             rectangles=rectangles, rings=rings, polygons=self.polygons.polygons if self.polygons else None,
@@ -107,8 +109,11 @@ class Coupled:
         mass, inertia = inside.mass.copy(), inside.inertia.copy()
         mass[seen.stop :] = inertia[seen.stop :] = 0.0
         share = np.ones((discs.count, 2))
-        share[seen] = response_share(self.grains, inside, LAYER * self.scales.spacing, seen)
+        share[seen] = response_share(self.grains, inside, LAYER * self.scales.spacing, seen, self._least)
         self.immersed = it = Immersed(mass, inertia, discs.velocity, discs.spin, weight, share)
+        if self._least > 0.0:
+            whole = of_whole_bodies(self.grains, discs.mass, discs.inertia)[0]
+            it.turn_back(whole[seen] / of_whole_bodies(self.grains, inside.mass, inside.inertia)[0][seen])
         self.weight, self.response_share = it.weight, it.response_share
         self.inner_mass, self.inner_inertia, self.inner_momentum = it.inner_mass, it.inner_inertia, it.inner_momentum
         self.inner_velocity, self.inner_spin = it.inner_velocity, it.inner_spin
@@ -212,11 +217,12 @@ class Coupled:
         return self._centre[self._seen], self._velocity[self._seen], self._spin[self._seen]
 
     def momentum(self) -> Reals:
-        """Conserved momentum, kg/s (per metre), (2,): fluid + discs - the fluid inside them and + virtual masses."""
+        """Conserved momentum, kg/s (per metre), (2,): fluid + discs - the fluid inside + virtual masses + load under
+        way."""
         with_inside = self.grains.discs.mass @ self.grains.discs.velocity - self.inner_momentum.sum(axis=0)
-        with_inside = with_inside + self.immersed.virtual_momentum(self.scales.step)
+        with_inside = with_inside + self.immersed.virtual_momentum(self._units, self.scales.step)
         if self.polygons:
-            with_inside = with_inside + self.polygons.momentum(self.scales.step)
+            with_inside = with_inside + self.polygons.momentum(self._units, self.scales.step)
         px, py = self.fluid.momentum()
         unit = self.scales.density * self.scales.spacing**2 * self.scales.velocity
         return np.asarray(with_inside + unit * np.array([px, py]))
@@ -259,13 +265,13 @@ def cells_of(fluid: Fluid) -> type[SaturatedCells]:
     return DeviceSaturatedCells
 
 
-def response_share(grains: Grains, inside: Displaced, layer: float, seen: slice) -> Reals:
+def response_share(grains: Grains, inside: Displaced, layer: float, seen: slice, least: float) -> Reals:
     """Share m_p/(m_p + m_v) of a change of force, and of torque, that each of the discs ``seen`` takes up in a step,
     (n, 2).
 
-    layer: thickness, m, of the fluid that answers within a step, see immersed.py.
+    layer: thickness, m, of the fluid that answers within a step;  least: of all the fluid inside: see immersed.py.
     """
-    thick = layer * inside.thinness[seen]
+    thick = np.maximum(layer * inside.thinness[seen], least)
     solid = of_whole_bodies(grains, grains.discs.mass, grains.discs.inertia)
     fluid = of_whole_bodies(grains, inside.mass, inside.inertia)
     ratio = np.column_stack([one / other for one, other in zip(solid, fluid, strict=True)])

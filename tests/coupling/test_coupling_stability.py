@@ -33,7 +33,7 @@ def rows() -> list[Row]:
 
 def test_every_pair_of_solid_operator_and_weight_is_in_the_map(rows):
     laws = stability.variants(False)
-    tried = {name for name, row in SOLID_OPERATORS.items() if not row.free_refused}
+    tried = set(SOLID_OPERATORS)
     assert {law["solid_operator"] for law in laws.values()} == tried
     assert {law["weighting"] for law in laws.values()} == {it for name in tried for it in fitting_weights(name)}
     assert {row.law for row in rows if row.flow.startswith("coupling.")} == set(laws)
@@ -66,7 +66,8 @@ def test_light_discs_hold_from_the_density_ratio_of_the_map_on(rows, law):
         ratios = {row.x for row in fall if row.y == cells}
         assert not {x for x in ratios if x >= least and (cells, x) in failed}
         lighter = [x for x in ratios if x < least]
-        assert not lighter or (cells, max(lighter)) in failed
+        # An array in little viscosity, which the map does not have, asks for more where cells turn populations back.
+        assert not lighter or (cells, max(lighter)) in failed or law.split()[0] in limits.TURNING_BACK
     right = {row.y for row in fall if all(it.verdict != STABLE for it in fall if it.y == row.y)}
     assert min(right) == limits.CELLS_RIGHT[law]
 
@@ -82,7 +83,10 @@ def test_check_warns_of_swings_from_where_the_map_is_no_longer_right(rows):
 def test_light_discs_between_the_sizes_of_the_map_count_as_the_smaller():
     assert limits.lightest(12.0, "odd-SC1", "B2") == 0.2
     assert limits.lightest(2.0) == 1.0
-    assert limits.lightest(10.0, "SC9", "B9") == max(limits.lightest(10.0, *law.split()) for law in limits.LIGHTEST)
+    turned = [law for law in limits.LIGHTEST if law.split()[0] in limits.TURNING_BACK]
+    others = [law for law in limits.LIGHTEST if law not in turned]
+    assert limits.lightest(10.0, "SC9", "B9") == max(limits.lightest(10.0, *law.split()) for law in others)
+    assert [limits.lightest(10.0, *law.split()) for law in turned] == [limits.LIGHT]
 
 
 def test_free_discs_run_away_with_what_is_for_held_ones(rows):

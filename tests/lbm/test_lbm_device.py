@@ -1,7 +1,8 @@
-"""The fluid on a device, in numba's simulator, beside the CPU's: the same bits, since both run the same operations.
+"""The fluid on a device beside the CPU's: the same bits, in numba's simulator and, with ``NUMBA_ENABLE_CUDASIM=0``,
+on the GPU of the machine, since all run the same operations.
 
-The simulator rounds after every operation, as the CPU's code does without fused products, and no sum runs over cells:
-the bound on the difference is zero.  On a device products may be fused: there docs/develop/gpu.md derives the bound.
+Each rounds after every operation, with ``fma`` where the code says so, and no sum runs over cells: the bound on the
+difference is zero.
 """
 
 import subprocess

@@ -22,5 +22,7 @@ def test_a_campaign_that_goes_on_has_one_row(tmp_path):
     assert "| 4 | 1 film, 3 row | 0 |" in page.read_text()
     campaigns.record("kills", 2, {"row": 1}, 1, tmp_path)  # the twin: another seed
     assert page.read_text().count("| kills |") == 2
+    campaigns.add({**json.loads((tmp_path / "campaigns.json").read_text())[0], "seed": "3 to 5"}, tmp_path)
+    assert page.read_text().count("| kills |") == 3
     assert page.read_text().startswith("before\n")
     assert page.read_text().endswith("\nafter\n")

@@ -88,7 +88,7 @@ def narrow_gap(scene: Scene, scales: Scales) -> str:
         return ""
     off = float(np.interp(cells, [gap for gap, _ in table], [share for _, share in table]))
     more = "at least " if cells < table[0][0] else ""
-    others = " or ".join(f"fluid.solid_operator = {n!r}" for n, it in SOLID_OPERATORS.items() if it.free_refused)
+    others = " or ".join(f"fluid.solid_operator = {n!r}" for n, it in SOLID_OPERATORS.items() if it.narrow_gaps)
     return (
         f"held discs stand {cells:.2g} cells apart: of an array of such gaps the drag is {more}{100 * off:.0f} % too"
         f" small; a spacing of {least / widest:.2g} m, or {others}, mends it"

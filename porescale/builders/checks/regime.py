@@ -251,11 +251,7 @@ def _check_operator(
             f"fluid.magic = {fluid.magic:g}: the solid operator {fluid.solid_operator!r} is made for {made_for:g}, and"
             " drag in dense beds is some 10 % off with another; leave it out"
         )
-    if SOLID_OPERATORS[fluid.solid_operator].free_refused and scene.grains is not None:
-        problem = "is for bodies that are held, [[disc]], [[rectangle]] and [ring]: free grains run away with it"
-        others = " or ".join(repr(name) for name, row in SOLID_OPERATORS.items() if not row.held_only)
-        faults.append(Fault("fluid.solid_operator", fluid.solid_operator, problem, "", others, "take one of these"))
-    elif fluid.solid_operator in HELD_ONLY and scene.grains is not None:
+    if fluid.solid_operator in HELD_ONLY and scene.grains is not None:
         warnings.append(
             f"fluid.solid_operator = {fluid.solid_operator!r}: free grains ran away with it in every trial; it is for"
             " held discs"

@@ -189,12 +189,17 @@ def _endurance(package: Package) -> Callable[..., int]:
         *names: Annotated[str, Parameter(help="what lasts; all if not given")],
         steps: Annotated[int, Parameter(help="of each")] = 1_000_000,
         out: Annotated[str, Parameter(help="folder of endurance.json, .md and .png")] = "runs/endurance",
-        resume: Annotated[bool, Parameter(help="keep what an earlier call has finished there")] = False,
+        resume: Annotated[bool, Parameter(help="keep what has finished there, and go on with what has not")] = False,
         list_: List = False,
         threads: Threads = 1,
         json: Json = False,
     ) -> int:
-        """Run small things for a million steps: what creeps of mass, momentum, places, memory; what is found wrong."""
+        """Run small things for a million steps: what creeps of mass, momentum, places, memory; what is found wrong.
+
+        A flow is kept in the folder every half minute: `--resume` goes on from there, to the same numbers.  Calls with
+        `--resume` and other names may write to the same folder at the same time.
+        """
+        from porescale.common.core.atomic import owned
         from porescale.common.evidence import endurance as study
 
         assert package.endurance is not None
@@ -207,14 +212,20 @@ def _endurance(package: Package) -> Callable[..., int]:
         folder = output_folder(out)
         use_threads(threads)
         kept = study.finished(folder) if resume else {}
-        words = _command_line(package, "endurance", names, f"--steps {steps}")
+        words = _command_line(package, "endurance", () if resume else names, f"--steps {steps}")
         for it in chosen:
             if it.name in kept and kept[it.name][0].steps == it.steps(steps):
                 say(f"{it.name}: kept")
                 continue
-            kept[it.name] = study.endure(it, steps, say)
-            ordered = [line for flow in package.endurance().chosen() for line in kept.get(flow.name, [])]
-            study.write(folder, circumstances(package, words, threads or 1), ordered)
+            unfinished = study.kept_file(folder, it)
+            if not resume:
+                unfinished.unlink(missing_ok=True)
+            lines = study.endure(it, steps, say, unfinished)
+            with owned(folder, wait=True):
+                kept = (study.finished(folder) if resume else kept) | {it.name: lines}
+                ordered = [line for flow in package.endurance().chosen() for line in kept.get(flow.name, [])]
+                study.write(folder, circumstances(package, words, threads or 1), ordered)
+            unfinished.unlink()
         lines = [line for it in chosen for line in kept[it.name]]
         if json:
             print_json(map(asdict, lines))

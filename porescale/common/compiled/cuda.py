@@ -8,11 +8,12 @@ numba's CUDA target is imported by the first call here, never by a run on the CP
 the environment it is numba's simulator: every thread of every block in plain Python, on any machine.
 """
 
+import dis
 import math
 import os
 import warnings
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
 from types import FunctionType, ModuleType
@@ -32,16 +33,31 @@ WARP = 32
 SIMULATOR = "numba's simulator"
 
 SMALL_GRID = r"(?s).*Grid size \d+ will likely result in GPU under-utilization"
-"""How numba warns of a launch below 128 blocks, whatever colours go before: rows of bodies and links are few."""
+"""How numba warns of a launch below 128 blocks, whatever colours go before: rows of bodies and links are few.  Of any
+category, since numba-cuda and numba have each its own."""
 STREAM_PER_THREAD = "NUMBA_CUDA_PER_THREAD_DEFAULT_STREAM", "CUDA_PYTHON_CUDA_PER_THREAD_DEFAULT_STREAM"
 """Variables by which the stream 0 no longer waits for others, nor they for it: see ``launch``."""
 
 
 @cache
 def cuda() -> Any:
-    """numba's CUDA module, that no longer warns of small grids."""
-    warnings.filterwarnings("ignore", SMALL_GRID, import_module("numba.core.errors").NumbaPerformanceWarning)
-    return import_module("numba.cuda")
+    """numba's CUDA module, that no longer warns of small grids, and fuses no product with a sum."""
+    found = import_module("numba.cuda")
+    warnings.filterwarnings("ignore", SMALL_GRID)
+    if not simulated():
+        nvvm: Any = import_module("numba.cuda.cudadrv.nvvm")
+        nvvm.compile_ir = partial(nvvm.compile_ir, fma=False)
+    return found
+
+
+def jit(function: Any, **options: Any) -> Any:
+    """The function compiled by numba's ``cuda.jit``: its code rounds after every operation, as the CPU's does, but for
+    ``fma``.
+
+    Without optimisation at the link, which would fuse products with sums once more.  Given with its function, since
+    numba-cuda 0.30 forgets the option where it decorates.
+    """
+    return cuda().jit(function, **options, **({} if simulated() else {"lto": False}))
 
 
 def simulated() -> bool:
@@ -138,7 +154,7 @@ def _device_kernel(function: FunctionType, law: Laws, real: type) -> Any:
 
     law : of the law functions that it calls;  real : np.float32 or np.float64, of ``precision_constants``.
     """
-    return cuda().jit(_for_device(function, law, real))
+    return jit(_for_device(function, law, real))
 
 
 device_kernel: Any = cache(_device_kernel)
@@ -148,7 +164,7 @@ device_kernel: Any = cache(_device_kernel)
 @cache
 def device_function(function: FunctionType, law: Laws, real: type) -> Any:
     """The device function of a function in plain Python, for a law, or several, and a precision."""
-    return cuda().jit(device=True)(_for_device(function, law, real))
+    return jit(_for_device(function, law, real), device=True)
 
 
 def launch(compiled: Any, count: int, block: int, *arguments: Any, stream: Any = 0) -> None:
@@ -183,12 +199,17 @@ def grid() -> int:
 def _for_device(function: FunctionType, law: Laws, real: type) -> FunctionType:
     """A copy of the function in whose names everything compiled for the CPU is compiled for the device."""
     names = dict(function.__globals__)
-    for name in function.__code__.co_names:
+    for name in _globals_of(function):
         if name in names:
             names[name] = _meaning(names[name], law, real)
     made = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
     made.__doc__, made.__module__ = function.__doc__, function.__module__
     return made
+
+
+def _globals_of(function: FunctionType) -> set[str]:
+    """Global names that a function reads; not attributes, of which one may be called as a global is (``np.sqrt``)."""
+    return {it.argval for it in dis.get_instructions(function) if it.opname == "LOAD_GLOBAL"}
 
 
 def _meaning(value: Any, law: Laws, real: type) -> Any:
@@ -198,7 +219,7 @@ def _meaning(value: Any, law: Laws, real: type) -> Any:
     if value is grid:
         return _numbered()
     if value is unchecked_view:  # its plain form; inlined, since no device function may return a slice
-        return cuda().jit(device=True, inline="always")(value)
+        return jit(value, device=True, inline="always")
     if value is simd.fma and not simulated():
         return _device_fma()
     if getattr(value, "__module__", "") == simd.__name__ and not simulated():  # of numbers: a thread has no lanes
@@ -235,13 +256,13 @@ def _numpy() -> ModuleType:
 @cache
 def _numbered() -> Any:
     """Device function that gives the number of the thread."""
-    return cuda().jit(device=True)(FunctionType(_thread.__code__, {"cuda": cuda()}, "thread"))
+    return jit(FunctionType(_thread.__code__, {"cuda": cuda()}, "thread"), device=True)
 
 
 @cache
 def _device_fma() -> Any:
     """Device function for ``fma``."""
-    return cuda().jit(device=True)(FunctionType(_fused.__code__, {"cuda": cuda()}, "fused"))
+    return jit(FunctionType(_fused.__code__, {"cuda": cuda()}, "fused"), device=True)
 
 
 def _fused(a: Any, b: Any, c: Any) -> Any:

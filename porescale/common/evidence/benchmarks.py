@@ -174,7 +174,7 @@ def _copy_of(work: Work, threads: int, dtype: Dtype) -> Copy | DeviceCopy:
     if work.gpu:
         from porescale.common.evidence.device_bandwidth import DeviceCopy
 
-        return DeviceCopy(dtype, work.memory)
+        return DeviceCopy(work.memory)
     from porescale.common.evidence.bandwidth import Copy
 
     return Copy(threads, dtype, work.memory)

@@ -4,19 +4,24 @@ Packages register systems; `study endurance` runs it, a million steps by default
 Quantities are taken as they are at marks, equal numbers of steps apart; each has a largest distance from its value at
 the first mark that counts, and a reason for it.  The peak of the process's memory must not grow from there on, either,
 and nothing must be found wrong: that is checked as often as in a run.
+
+A flow may go on in another process: it is kept in a file of its own now and then, and then ends with the same numbers.
+Seconds add up, and so does what the peak of memory grew by in each process, from its first mark on.
 """
 
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
-from porescale.common.core.errors import Unstable
+from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.core.machine import peak_bytes
 from porescale.common.evidence import files
 from porescale.common.evidence.register import Register
+from porescale.common.record.check_state import other
+from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 
 NAME = "endurance"
 MARKS = 20
@@ -26,6 +31,8 @@ GROWTH = 1.0
 FOUND = "found wrong ()"
 CHECK_EVERY = 100
 """Steps between checks of the state, as in a run."""
+KEEP_EVERY = 30.0
+"""Seconds after which an unfinished flow is kept again: what a killed process loses at most."""
 
 
 class Lasting(Protocol):
@@ -39,6 +46,12 @@ class Lasting(Protocol):
 
     def read(self) -> Mapping[str, float]:
         """The monitored quantities, by name with unit."""
+
+    def state(self) -> dict[str, Any]:
+        """All it takes to go on bit for bit."""
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on from a ``state`` of a system of the same start."""
 
 
 @dataclass(frozen=True)
@@ -88,56 +101,115 @@ class Line:
 Say = Callable[[str], object]
 
 
-def endure(it: Endurance, steps: int, say: Say = lambda text: None) -> list[Line]:
-    """Run it for ``steps`` steps, or its share: lines of each quantity, of what was found wrong, and of memory."""
-    steps = it.steps(steps)
-    run, at, begun = it.start(), [0], time.perf_counter()
-    wrong = _advance(run, it.before, say)
-    seen: dict[str, list[float]] = {name: [float(value)] for name, value in run.read().items()}
-    memory, found = [peak_bytes() / 2**20], [float(wrong)]
-    for mark in range(1, MARKS + 1):
-        to = steps * mark // MARKS
-        found.append(found[-1] + _advance(run, to - at[-1], say))
-        at.append(to)
-        for name, value in run.read().items():
-            seen[name].append(float(value))
-        memory.append(peak_bytes() / 2**20)
-        spent = time.perf_counter() - begun
-        say(f"{it.name}: {to} of {steps} steps, about {spent / mark * (MARKS - mark):.0f} s left")
-    seconds = time.perf_counter() - begun
+@dataclass
+class Noted:
+    """What was seen of a flow so far.  done : steps, from -``before`` on;  wrong : how often a check found something;
+    seen : values at the marks so far, by quantity;  seconds : of earlier processes."""
 
-    def line(name: str, values: list[float], allowed: float, because: str, first: int = it.settles) -> Line:
+    done: int
+    wrong: int
+    seen: dict[str, list[float]]
+    seconds: float
+
+    def note(self, values: Mapping[str, float], peak: float, last: float | None) -> None:
+        """Add the values at a mark, with what was found wrong and memory by then.
+
+        peak, last : MiB of this process now and at its mark before, None at its first
+        """
+        memory = self.seen.get(MEMORY, [peak])[-1] + (0.0 if last is None else peak - last)
+        for name, value in {**values, FOUND: self.wrong, MEMORY: memory}.items():
+            self.seen.setdefault(name, []).append(float(value))
+
+
+def endure(it: Endurance, steps: int, say: Say = lambda text: None, kept: Path | None = None) -> list[Line]:
+    """Run it for ``steps`` steps, or its share: lines of each quantity, of what was found wrong, and of memory.
+
+    kept : the file in which it is kept every KEEP_EVERY seconds, and gone on from if there is one of as many steps.
+    InputError where that is damaged.
+    """
+    steps = it.steps(steps)
+    run, noted, begun = it.start(), Noted(-it.before, 0, {}, 0.0), time.perf_counter()
+    marks = [steps * mark // MARKS for mark in range(MARKS + 1)]
+    if kept is not None:
+        noted = _taken_up(kept, steps, run, noted)
+        say(f"{it.name}: begins at step {noted.done} of {steps}")
+
+    def seconds() -> float:
+        """Seconds of all processes, as they are written."""
+        return round(noted.seconds + time.perf_counter() - begun, 3)
+
+    saved, last = begun, None
+    for mark in range(len(noted.seen.get(FOUND, [])), MARKS + 1):
+        while noted.done < marks[mark]:
+            noted.done += _block(run, noted, min(CHECK_EVERY, marks[mark] - noted.done), say)
+            # Not at a mark: a process that goes on has advanced by its first one, and loaded what it needs.
+            due = noted.done < marks[mark] and time.perf_counter() - saved > KEEP_EVERY
+            if kept is not None and due:
+                _keep(kept, steps, run, replace(noted, seconds=seconds()))
+                saved = time.perf_counter()
+        peak = peak_bytes() / 2**20
+        noted.note(run.read(), peak, last)
+        last = peak
+        if mark:
+            left = seconds() / mark * (MARKS - mark)
+            say(f"{it.name}: {noted.done} of {steps} steps, about {left:.0f} s left")
+
+    def line(name: str, allowed: float, because: str, first: int = it.settles) -> Line:
         """The verdict on one quantity: how far its values leave the first that counts, against ``allowed``."""
-        counted = values[first:]
-        off = max(abs(value - counted[0]) for value in counted)
-        return Line(it.name, name, steps, at, values, off, allowed, because, off <= allowed, round(seconds, 3))
+        values = noted.seen[name]
+        off = max(abs(value - values[first]) for value in values[first:])
+        return Line(it.name, name, steps, marks, values, off, allowed, because, off <= allowed, seconds())
 
     # Before the first mark kernels are compiled or loaded: memory counts from there.
-    lines = [line(each.name, seen[each.name], each.allowed(steps), each.because) for each in it.held]
     return [
-        *lines,
-        line(FOUND, found, 0.0, f"all is well, asked every {CHECK_EVERY} steps", 0),
-        line(MEMORY, memory, GROWTH, "nothing is kept from step to step", max(1, it.settles)),
+        *(line(each.name, each.allowed(steps), each.because) for each in it.held),
+        line(FOUND, 0.0, f"all is well, asked every {CHECK_EVERY} steps", 0),
+        line(MEMORY, GROWTH, "nothing is kept from step to step", max(1, it.settles)),
     ]
 
 
-def _advance(run: Lasting, steps: int, say: Say) -> int:
-    """So many steps; how often something was found wrong."""
-    wrong = 0
-    for done in range(0, steps, CHECK_EVERY):
-        run.advance(min(CHECK_EVERY, steps - done))
-        try:
-            run.check()
-        except Unstable as error:
-            wrong += 1
-            say(str(error))
-    return wrong
+def _block(run: Lasting, noted: Noted, steps: int, say: Say) -> int:
+    """So many steps and a check; their number."""
+    run.advance(steps)
+    try:
+        run.check()
+    except Unstable as error:
+        noted.wrong += 1
+        say(str(error))
+    return steps
+
+
+def _keep(kept: Path, steps: int, run: Lasting, noted: Noted) -> None:
+    """Write all it takes to go on, whole or not at all."""
+    write_checkpoint(kept, {"steps": steps, "noted": asdict(noted), "state": run.state()})
+
+
+def _taken_up(kept: Path, steps: int, run: Lasting, start: Noted) -> Noted:
+    """What was noted of the flow in a file, which ``run`` goes on from; what is there of other steps begins anew.
+
+    Every process writes and reads it first, so that its memory holds from the start what that takes.
+    """
+    if not kept.exists() or read_checkpoint(kept, skip="state").get("steps") != steps:
+        _keep(kept, steps, run, start)
+    content = read_checkpoint(kept)
+    if wrong := other(run.state(), content["state"]):
+        repair = "remove the file, and the flow begins anew"
+        raise InputError(Fault("unfinished flow", str(kept), f"does not fit this version ({wrong})", repair=repair))
+    run.restore(content["state"])
+    noted = Noted(**content["noted"])
+    _keep(kept, steps, run, noted)
+    return noted
 
 
 class Endurances(Register[Endurance]):
     """Register of the systems that `study endurance` runs."""
 
     what = "flow"
+
+
+def kept_file(folder: Path, it: Endurance) -> Path:
+    """Where a flow is kept until it has finished."""
+    return folder / f"{it.name.replace(' ', '_')}.h5"
 
 
 def write(folder: Path, about: Mapping[str, Any], lines: Sequence[Line]) -> None:

@@ -30,10 +30,11 @@ class SolidOperator:
 
     What follows from it:  radius_shift : times the magic parameter, cells², over the radius: what a disc's radius lacks
     in the lattice;  half_step_correction : whether full cells are given a velocity whose time-centred value is the
-    body's (load.py);  force_everywhere : whether the body force acts in the whole of a cell;  held_only : whether free
-    discs run away with it;  longest_relaxation_time : up to which drag is right;  magic : the one magic parameter that
-    it is made for, None for any;  free_refused : whether scenes with free grains are refused with it, and the map of
-    stability leaves it out;  gaps : gap in cells between discs of a square array, and by how much of it the drag is too
+    body's (load.py);  turns_back : whether full cells turn populations back, so that the fluid inside a free body
+    answers it with a change of sign each step (immersed.py);  force_everywhere : whether the body force acts in the
+    whole of a cell;  held_only : whether free discs run away with it;  longest_relaxation_time : up to which drag is
+    right;  magic : the one magic parameter that it is made for, None for any;  narrow_gaps : whether a gap of 1.4 cells
+    carries what it should;  gaps : gap in cells between discs of a square array, and by how much of it the drag is too
     small there, the worst of relaxation times up to 1; ascending;  holds : by weight;  order : place in lists, the
     recommended one first.
     """
@@ -46,11 +47,12 @@ class SolidOperator:
     weight: str | None = None
     radius_shift: float = 0.0
     half_step_correction: bool = False
+    turns_back: bool = False
     force_everywhere: bool = False
     held_only: bool = False
     longest_relaxation_time: float = 1.5
     magic: float | None = None
-    free_refused: bool = False
+    narrow_gaps: bool = False
     gaps: tuple[tuple[float, float], ...] = ()
     holds: Mapping[str, Holds] = field(default_factory=dict)
     order: int = 100

@@ -1,4 +1,4 @@
-"""An exact wall whose rates are chosen by what a narrow channel carries, for bodies that are held.
+"""An exact wall whose rates are chosen by what a narrow channel carries.
 
 As in solid/exact_wall.py a row of cells of solid fraction e, t = 1 - e, has the rates b of momentum, s_q of the other
 antisymmetric moments q and s_e of the symmetric half, with k = tau - 1/2, 1/beta = 1/b - 1/2, lambda = 1/s_q - 1/2 and
@@ -24,7 +24,8 @@ least is 3/4 t/k (k0 = 0).  No term has tau in it then.  So
 
 which goes over continuously into fluid (e = 0: g infinite, lambda = lambda0, k0 = k) and into a cell that turns
 populations back (e = 1: b = 2, s_q = 2, s_e = 0).  Such a cell is at rest with its body by itself; no half-step
-correction is needed, and free discs run away as with SC3.  t (t - y) has the mean 1/24 at s = 0.16.
+correction is needed, and free bodies have the load of two steps (immersed.py).  t (t - y) has the mean 1/24 at
+s = 0.16.
 
 Derived here, but for s = 0.2, E = 0.05 and the radius shift 0.4 magic/r, which were chosen on square arrays of solid
 fraction 0.3 to 0.6, 10 cells a diameter, tau 0.8: drag within 0.2, 0.5, 1.2 and 1.0 % as the mean over places, at any
@@ -36,7 +37,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.entry import SolidOperator
+from porescale.coupling.solid.entry import Holds, SolidOperator
 from porescale.coupling.solid.exact_wall import blend_wall, collide_with_wall, momentum_to_wall, whole_cell
 from porescale.coupling.solid.law import (
     blend,
@@ -97,15 +98,16 @@ def narrow_rates(e, b, theta, slip_x, slip_y, solid):
 
 SOLID_OPERATOR = SolidOperator(
     name="narrow-wall",
-    purpose="for bodies that are held: drag and permeability of dense beds with gaps of 1.4 cells and more",
+    purpose="drag and permeability of dense beds with gaps of 1.4 cells and more; twice the noise of what moves",
     law=NarrowWall,
     constants={"bend": BEND, "onset": ONSET, "start": GRADE * ONSET},
     weight="narrow",
     radius_shift=0.4,
     force_everywhere=True,
-    held_only=True,
+    turns_back=True,
     longest_relaxation_time=2.0,
     magic=MAGIC_MIDWAY_WALL,
-    free_refused=True,  # in trials no free disc of a density ratio of 0.3 to 2.5 lasted, some not 50 steps
+    narrow_gaps=True,
+    holds={"narrow": Holds(lightest=((5.0, 0.1), (3.0, 0.2)), cells=5.0, bed=((0.6, 5.0), (0.7, 10.0)))},
     order=5,
 )

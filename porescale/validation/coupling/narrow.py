@@ -1,5 +1,5 @@
 """Validations of arrays with gaps of 1.4 to 4 cells: at the magic parameter with which narrow channels carry what they
-should, and of held discs with the solid operator whose rates are chosen by it.
+should, and of held and of falling discs with the solid operator whose rates are chosen by it.
 
 Square arrays of 0.2 to 0.6 were looked at first (1/4 to 1/24), and 1/24 was the best; that plane channels of 4 cells
 then carry what they should within 1 % (tests/coupling/test_narrow_channels.py; 1/16 does nearly as well) is its reason.
@@ -7,20 +7,25 @@ Dense hexagonal arrays and the moving disc were not looked at before.  The radiu
 (solid/exact_wall.py).  References as in arrays.py.  Lattice units.
 """
 
+import math
+
 import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.collision.entry import MAGIC_NARROW_CHANNEL
+from porescale.lbm.lattice import viscosity
 from porescale.validation.coupling.arrays import (
     DENSE_HEXAGONAL,
     HEXAGONAL,
     MOVING,
     REQUIRED,
+    SQUARE,
     hexagonal,
     moving_drag,
     square,
 )
-from porescale.validation.coupling.setups import TAU, Method
+from porescale.validation.coupling.setups import TAU, Method, immersed
+from porescale.validation.lbm.channels import run
 
 VALIDATIONS = Validations()
 SIDES = "reference", "measured"
@@ -33,6 +38,34 @@ def _together(rows: list[Measured]) -> Measured:
     """One row of several, with the largest of their errors."""
     reference, found = (np.concatenate([np.atleast_1d(getattr(row, name)) for row in rows]).tolist() for name in SIDES)
     return Measured(reference, found, max(row.error for row in rows))
+
+
+def falling_drag(
+    fraction: float, ratio: float, *, relaxation_time: float = TAU, diameter: float = 10.0, degrees: float = 11.0,
+    reynolds: float = 0.2, method: Method = HELD,
+) -> float:  # fmt: skip
+    """Drag F/(mu U) of the discs of a square array, of density ``ratio``, that fall freely at an angle to the grid.
+
+    A body force on everything bears their weight F.  U: against the mean flow, as the mean over ten cells of way at the
+    Reynolds number of a disc.
+    """
+    cells = round(diameter * math.sqrt(math.pi / (4 * fraction)))
+    radius, nu = cells * math.sqrt(fraction / math.pi), viscosity(relaxation_time)
+    speed = reynolds * nu / (2 * radius)
+    along = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
+    weight = SQUARE[fraction] * nu * speed
+    pull, against = weight / ((ratio - 1) * math.pi * radius**2) * along, -weight / cells**2 * along
+    coupled = immersed(
+        (cells, cells), [(cells / 2, cells / 2)], radius, ratio, speed * along, relaxation_time=relaxation_time,
+        sides=("periodic", "periodic"), acceleration=(pull[0], pull[1]), force=(against[0], against[1]), method=method,
+    )  # fmt: skip
+    run(coupled.advance, math.ceil(cells**2 / nu))
+    found = np.zeros(round(10 / speed))
+    for step in range(len(found)):
+        run(coupled.advance, 1)
+        flow = np.array(coupled.fluid.momentum()) / cells**2
+        found[step] = (coupled.grains.discs.velocity[0] - flow) @ along
+    return float(weight / (nu * found.mean()))
 
 
 @VALIDATIONS.row(
@@ -105,3 +138,15 @@ def held_in_looser_arrays() -> Measured:
 def held_in_dense_hexagonal_arrays() -> Measured:
     """Drag along and across rows at 21 cells per diameter, tau 0.8, solid operator narrow-wall."""
     return hexagonal(DENSE_HEXAGONAL, 3 * REQUIRED, method=HELD)
+
+
+@VALIDATIONS.row(
+    "coupling.dense_square_array_that_falls",
+    source="drag of the square array, solid fraction 0.5, whichever moves, discs or fluid (Galilei); point forces",
+    because="required: 3 % of free discs 10 cells wide, as of held ones; the gap is 2.6 cells",
+    tolerance=3 * REQUIRED,
+)
+def falling() -> Measured:
+    """Drag of free discs of density ratio 2.5 and 0.5, tau 0.8, solid operator narrow-wall."""
+    found = [falling_drag(0.5, ratio) for ratio in (2.5, 0.5)]
+    return Measured.relative([SQUARE[0.5]] * len(found), found)

@@ -111,7 +111,7 @@ def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: 
     coupled = three(ratio, [(0.04, 0.01), (-0.04, 0.0), (0.0, -0.04)], [0.002, -0.004, 0.01], g)
     polygons = coupled.polygons
     assert polygons
-    outside = lambda: np.array(coupled.momentum() - polygons.momentum(coupled.scales.step))  # noqa: E731
+    outside = lambda: np.array(coupled.momentum() - polygons.momentum(coupled._units, coupled.scales.step))  # noqa: E731
     return setups.momentum_error(coupled, steps, None if inside else outside)
 
 

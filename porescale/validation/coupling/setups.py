@@ -112,7 +112,7 @@ def without_inner_mass(coupled: Coupled) -> Coupled:
 
 def handful(
     *, sides: tuple[Kind, Kind] = ("periodic", "periodic"), acceleration: tuple[float, float] = (0.0, 0.0),
-    ratio: float = 0.8, mirrored: bool = False, gate: bool = False,
+    ratio: float = 0.8, mirrored: bool = False, gate: bool = False, method: Method = DEFAULT,
 ) -> Coupled:  # fmt: skip
     """Six discs of density 1.5 to 4 in a box of 60 x 40 cells, ``mirrored`` left for right.
 
@@ -130,7 +130,7 @@ def handful(
         acceleration = -acceleration[0], acceleration[1]
     return immersed(
         cells, position, radius, [3.0, 1.5, 4.0, 2.0, 3.5, 2.5], velocity, spin, relaxation_time=0.6, sides=sides,
-        acceleration=acceleration, ratio=ratio, gate=column if gate else None,
+        acceleration=acceleration, ratio=ratio, gate=column if gate else None, method=method,
     )  # fmt: skip
 
 

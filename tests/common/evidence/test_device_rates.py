@@ -16,12 +16,11 @@ from porescale.common.evidence.benchmarks import PLAIN, Benchmarks
 from porescale.common.evidence.device_bandwidth import DeviceCopy
 
 
-@pytest.mark.parametrize("dtype", ["float32", "float64"])
-def test_the_copy_goes_over_all_of_the_memory_in_place(dtype):
-    copy = DeviceCopy(dtype, 9 * 5 * np.dtype(dtype).itemsize)
-    assert copy.bytes == 2 * 9 * 5 * np.dtype(dtype).itemsize
+def test_the_copy_goes_over_all_of_the_memory_in_place():
+    copy = DeviceCopy(9 * 5 * 8)
+    assert copy.bytes == 2 * 9 * 5 * 8
     copy._flip(copy.nine)
-    assert (copy.nine.copy_to_host() == np.full((9, 5), 0.75, dtype)).all()
+    assert (copy.nine.copy_to_host() == np.full((9, 5), 0.75)).all()
     copy()
     assert (copy.nine.copy_to_host() == 0.75).all()  # once in each form
 

@@ -12,6 +12,7 @@ SIGINT and SIGTERM come in the same way (--stops): for them it is said how long 
 import argparse
 import faulthandler
 import json
+import math
 import mmap
 import os
 import random
@@ -25,6 +26,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -34,7 +37,7 @@ os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
 from porescale.common.record.checkpoint import read_header
 from porescale.common.schema.sections import load
-from tests.reference.faults import campaigns
+from tests.reference.faults import campaigns, kill_jobs
 from tests.reference.faults.failing_disk import whole
 from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
@@ -204,9 +207,10 @@ class Child:
 
 
 class Campaign:
-    """Kills runs of ``scene`` in ``place``, by the dice of ``seed``."""
+    """Kills runs of ``scene`` in ``place``, by the dice of ``seed``.  made : another process has made what nobody kills
+    there, and compiled what it needs."""
 
-    def __init__(self, name: str, place: Path, seed: int) -> None:
+    def __init__(self, name: str, place: Path, seed: int, made: bool = False) -> None:
         self.package, values = SCENES[name]
         self.name, self.place, self.dice = name, place, random.Random(f"{name} {seed}")
         place.mkdir(parents=True, exist_ok=True)
@@ -216,7 +220,7 @@ class Campaign:
         self.kills: Counter[str] = Counter()
         self.finals, self.pictured = 0, True
         self.warm()
-        for pictured, folder in self.untouched.items():
+        for pictured, folder in () if made else self.untouched.items():
             self.pictured = pictured
             shutil.rmtree(folder, ignore_errors=True)
             assert self.child(folder).wait() == 0
@@ -224,7 +228,8 @@ class Campaign:
         self.steps = read_header(self.untouched[True] / "checkpoint.h5")["step"]
 
     def warm(self) -> None:
-        """Load what all children need, in this process."""
+        """Load what all children need, in this process: kernels, and matplotlib, a third of a child's time."""
+        import_module("porescale.common.page.page")
         package = _package(self.package)
         model = package.build(load(self.scene, package.scene()))
         model.advance(2)
@@ -303,15 +308,20 @@ class Campaign:
         assert code in (0, -signal.SIGKILL), f"a run ended by itself with {code} while {doing}"
         return doing if code else None
 
-    def round(self, number: int, most: int, cold: Path | None = None) -> None:
-        """A run killed one to sixteen times, at most ``most``, then resumed to its end."""
+    def apart(self, place: Path, seed: int) -> None:
+        """Go on in another folder with other dice, in a process forked from that which made this."""
+        place.mkdir(parents=True, exist_ok=True)
+        self.place, self.marks, self.dice = place, Marks(place / "marks"), random.Random(f"{self.name} {seed}")
+
+    def round(self, number: int, most: int, cold: Path | None = None, until: float = math.inf) -> None:
+        """A run killed one to sixteen times, at most ``most``, none after ``until``, then resumed to its end."""
         folder = self.place / f"run{number}"
         shutil.rmtree(folder, ignore_errors=True)
         if cold is not None:
             self.forget(cold)
         self.pictured = self.dice.random() < 0.2 or cold is not None
         for _ in range(min(most, self.dice.randint(1, 16))):
-            doing = self.kill(folder, cold)
+            doing = self.kill(folder, cold) if time.monotonic() < until else None
             if doing is None:
                 break
             self.kills[("cold: " if cold else "") + doing] += 1
@@ -353,32 +363,28 @@ def main() -> int:
     parser.add_argument("--cold", type=int, default=0, help="of these from nothing")
     parser.add_argument("--stops", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=1e9, help="of all; no kill comes later, its run still ends")
+    parser.add_argument("--jobs", type=int, default=1, help="processes side by side, with seeds from --seed on")
     parser.add_argument("--record", action="store_true", help="keep what it came to in docs/develop")
     parser.add_argument("--out", type=Path, default=Path("runs/kills"))
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
     options = parser.parse_args()
-    all_of = {name: Campaign(name, options.out / name, options.seed) for name in options.scenes}
-    count, number = 0, 0
-    while count < options.kills:
-        it = all_of[options.scenes[number % len(options.scenes)]]
-        cold = None
-        if (
-            sum(n for each in all_of.values() for k, n in each.kills.items() if k.startswith("cold"))
-            < options.cold * (count + 1) / options.kills
-        ):
-            cold = (options.out / "cold").resolve()
-        it.round(number, options.kills - count, cold)
-        number += 1
-        count = sum(sum(each.kills.values()) for each in all_of.values())
-        done = {name: {"kills": dict(each.kills), "resumed to the same bits": each.finals}
-                for name, each in all_of.items()}  # fmt: skip
-        (options.out / "kills.json").write_text(
-            json.dumps({"seed": options.seed, "kills": count, "scenes": done}, indent=1)
-        )
+    goal = kill_jobs.Goal(options.kills, options.cold, time.monotonic(), options.seconds, options.seed)
+    begin = [partial(Campaign, name, options.out / name, options.seed) for name in options.scenes]
+    if at_once := options.jobs > 1:
+        for number in [kill_jobs.forked(one) for one in begin]:
+            assert ended(number, COLD_PATIENCE) == 0, "a scene that nobody kills has ended badly"
+    all_of = {name: one(at_once) for name, one in zip(options.scenes, begin, strict=True)}
+    seeds = str(options.seed) + (f" to {options.seed + options.jobs - 1}" if options.jobs > 1 else "")
+
+    def tell(said: dict[str, Any]) -> None:
+        """Say and record what it came to so far."""
+        kill_jobs.report(said, goal)
         if options.record:
-            every = sum((each.kills for each in all_of.values()), Counter())
-            campaigns.record(f"kills of {', '.join(options.scenes)}", options.seed, every, 0)
-        print(f"{count} of {options.kills} kills", file=sys.stderr, flush=True)
+            name = f"kills of {', '.join(options.scenes)}"
+            campaigns.record(name, seeds, kill_jobs.kinds(said), len(said["wrong"]))
+
+    said = kill_jobs.side_by_side(all_of, goal, options.out, options.jobs, tell)
     stops = []
     while len(stops) < options.stops:
         found = all_of[options.scenes[len(stops) % len(options.scenes)]].stop(len(stops))
@@ -387,7 +393,7 @@ def main() -> int:
     if stops:
         print(f"{len(stops)} stops: saved within {max(it[2] for it in stops):.2f} s, ended within "
               f"{max(it[3] for it in stops):.2f} s")  # fmt: skip
-    return 0
+    return 1 if said["wrong"] else 0
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ def compiling(found, capability) -> Iterator[None]:
     cuda, dispatcher = compiled.cuda(), import_module("numba.cuda.dispatcher")
     jit, device = cuda.jit, vars(dispatcher)["get_current_device"]
     on_host = {
-        "jit": lambda function=None, **more: jit(**more) if more else Compiled(function, found, capability),
+        "jit": lambda it, **more: jit(it, **more) if "device" in more else Compiled(it, found, capability),
         "to_device": lambda array: array.copy().view(OnHost),
         "device_array": lambda shape, dtype: np.zeros(shape, dtype).view(OnHost),
         "pinned_array": lambda shape, dtype: np.zeros(shape, dtype),

@@ -9,6 +9,7 @@ import pytest
 from porescale.coupling import psm as saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.validation.coupling import arrays as lab
+from porescale.validation.coupling.narrow import falling_drag
 from porescale.validation.coupling.setups import Method
 from porescale.validation.coupling.towed import square_array_drag
 from tests.reference.coupling.stokes_array import Array, square
@@ -108,6 +109,11 @@ def test_printed_operators_and_exact_walls_without_shift_or_correction_fail_on_a
 def test_the_parameter_of_plane_walls_fails_on_dense_arrays():
     found = lab.square((0.5,), (1.0,), np.inf, count=2)
     assert found.error > 1.3 * tolerance("coupling.dense_square_arrays_at_this_parameter")
+
+
+def test_exact_walls_fail_on_a_dense_array_that_falls():
+    found = falling_drag(0.5, 2.5, method=Method())
+    assert found < (1 - 1.2 * tolerance("coupling.dense_square_array_that_falls")) * lab.SQUARE[0.5]
 
 
 def test_exact_walls_fail_on_gaps_below_two_cells_and_printed_operators_on_what_looser_arrays_ask_of_held_discs():
