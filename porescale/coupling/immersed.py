@@ -19,8 +19,8 @@ step, d' = -d - rho dv, and the load is 2 d a cell.  It moves a body of density 
 d' = -(1 + 2/s) d grows whatever s is, and with a virtual mass too.  With a share p of the step's load and 1 - p of that
 before it, dv = 2 (p d + (1 - p) d_before)/s, the roots of x² + (1 + 2p/s) x + 2 (1 - p)/s = 0 are within 1 where
 p < 1/2 and s > 2 (1 - p); for lighter ones the virtual mass is raised until m_p + m_v is some mass of the fluid inside,
-which all answers.  These are NOW and INSIDE; from HEAVY on p = 1/2, with roots -1 and -1/s.  What is still under way is
-momentum, 1 - p of the last load.
+which all answers.  These are NOW and INSIDE; from HEAVY on p = 1/2, with roots -1 and -1/s, and where a body is
+held, which drives nothing.  What is still under way is momentum, 1 - p of the last load.
 """
 
 from typing import Any, NamedTuple
@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import kernel
-from porescale.common.core.types import Reals
+from porescale.common.core.types import AnyArray, Reals
 
 FOLLOWING = 0.9
 """Share of S/m_f with which the fluid inside follows: 1 lets discs of density ratio 0.1 run away."""
@@ -88,16 +88,18 @@ def to_lattice(position, velocity, spin, spacing, step, centre, lattice_velocity
 
 
 @kernel
-def part_of_two_steps(force, torque, now, under_way, acting):
-    """Load that acts in a step: a share ``now`` (n,) of its own, and what is under way.
+def part_of_two_steps(force, torque, now, held, under_way, acting):
+    """Load that acts in a step: a share ``now`` (n,) of its own, half of a ``held`` component's, and what is under way.
 
-    force (n, 2), torque (n,): of the step.  Overwrites acting (n, 3), and under_way (n, 3) with what comes next.
+    force (n, 2), torque (n,): of the step;  held: (n, 3) flags, or none.  Overwrites acting (n, 3) and, with
+    what comes next, under_way (n, 3).
     """
     for n in range(torque.shape[0]):
         for a in range(3):
             own = force[n, a] if a < 2 else torque[n]
-            acting[n, a] = now[n] * own + under_way[n, a]
-            under_way[n, a] = (1.0 - now[n]) * own
+            share = 0.5 if n < held.shape[0] and held[n, a] != 0 else now[n]
+            acting[n, a] = share * own + under_way[n, a]
+            under_way[n, a] = (1.0 - share) * own
 
 
 @kernel
@@ -160,10 +162,11 @@ class Immersed:
         """From now on a part of two steps' loads acts;  ratio (n,): mass over that of the fluid inside."""
         self.turns_back, self._now[: len(ratio)] = True, np.where(ratio < HEAVY, NOW, 0.5)
 
-    def respond(self, cells: CellLoad, units: Reals, velocity: Reals, spin: Reals, step: float) -> None:
-        """The loads of a fluid step, from the cells' sums and the bodies' motion (m/s, rad/s); step: s."""
+    def respond(self, cells: CellLoad, units: Reals, velocity: Reals, spin: Reals, step: float, held: AnyArray) -> None:
+        """The loads of a fluid step, from the cells' sums and the bodies' motion (m/s, rad/s); step: s;  held: flags of
+        their components, (n, 3), or none."""
         if self.turns_back:
-            part_of_two_steps(cells.force, cells.torque, self._now, self.under_way, self._acting)
+            part_of_two_steps(cells.force, cells.torque, self._now, held, self.under_way, self._acting)
             cells = CellLoad(self._acting[:, :2], self._acting[:, 2], cells.entrained)
         total_load(
             cells, units, velocity, spin, (self.weight, self.push), self.response_share, step, self._inner, self._load

@@ -11,7 +11,7 @@ import numpy as np
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.types import Floats
+from porescale.common.core.types import AnyArray, Floats
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.immersed import LAYER, Immersed
 from porescale.dem.bodies.clumps import Clumps
@@ -113,6 +113,11 @@ class ImmersedPolygons(Immersed):
     @property
     def _clumps(self) -> Clumps:
         return self._grains.steering.clumps
+
+    @property
+    def held(self) -> AnyArray:
+        """Flags of held components, (m, 3)."""
+        return self._clumps.held[self.first :]
 
     @property
     def position(self) -> Floats:

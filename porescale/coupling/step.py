@@ -144,11 +144,11 @@ class Coupled:
             self.inner_inertia[seen] = self._displaced.inertia[seen] * square**2
         self._take_push()
         cells = CellLoad(wet.force, wet.torque, wet.entrained)
-        self.immersed.respond(cells, self._units, discs.velocity, discs.spin[seen], step)
+        self.immersed.respond(cells, self._units, discs.velocity, discs.spin[seen], step, self.grains.held)
         if self.polygons:
             p = self.polygons
             cells = CellLoad(wet.polygon_load[:, :2], wet.polygon_load[:, 2], wet.polygon_entrained)
-            p.respond(cells, self._units, p.velocity, p.spin, step)
+            p.respond(cells, self._units, p.velocity, p.spin, step, p.held)
             p.distribute(self.immersed)
 
     def _take_push(self) -> None:
