@@ -3,8 +3,8 @@
     porescale sweep cases/loose_and_dense_collapse cases/loose_and_dense_collapse/beds.csv --repeat 3
     python cases/loose_and_dense_collapse/compare.py runs/loose_and_dense_collapse_sweep --write
 
-Reads the finished runs of the sweep, which are of one commit.  Lengths are over the column's length, pressures over
-its buoyant weight on the base, times over sqrt(H/g), H its height.
+Reads the finished runs of sweeps, each of one quality and one commit; the figure is that of the last.  Lengths are
+over the column's length, pressures over its buoyant weight on the base, times over sqrt(H/g), H its height.
 """
 
 import argparse
@@ -53,11 +53,11 @@ Beds = dict[str, list[dict[str, Any]]]
 """Runs by bed: dense, medium, loose."""
 
 
-def read(folder: Path) -> tuple[Beds, set[str]]:
+def read(folder: Path) -> tuple[Beds, set[tuple[str, str]]]:
     """The finished runs of a sweep, by bed: numbers at the start, rows of time, front, height and pore pressure, shape
-    at the end; and the commits that they are of."""
+    at the end; and the qualities and commits that they are of."""
     beds: Beds = {}
-    commits = set()
+    made_by = set()
     for path in sorted(it.parent for it in folder.glob("[!.]*/card.json")):
         run = ps.open_run(path)
         if run.outcome != "finished":
@@ -70,8 +70,8 @@ def read(folder: Path) -> tuple[Beds, set[str]]:
         profile = {float(name.split()[4]): value[-1] for name, value in run.table("profile").items() if " x = " in name}
         one = {"fraction": 1.0 - float(porosity[0]), "rows": np.array([*series, pressure]).T, "profile": profile}
         beds.setdefault(made, []).append(one)
-        commits.add(run.commit)
-    return beds, commits
+        made_by.add((run.card["quality"], run.commit))
+    return beds, made_by
 
 
 def numbers(one: dict[str, Any]) -> dict[str, float]:
@@ -142,7 +142,7 @@ def draw(runs: Beds, path: Path) -> None:
         ax.set_xlim(0.5, 500.0)
     axes[2].set_aspect("equal")
     axes[2].legend(fontsize=8)
-    figure.savefig(path, dpi=90)
+    figure.savefig(path, dpi=80)
 
 
 def spread(values: Any) -> str:
@@ -156,45 +156,53 @@ def spread(values: Any) -> str:
     return f"{found.mean():.3g}" + (f" ± {found.std(ddof=1):.1g}" if len(found) > 1 else "")
 
 
-def table(runs: Beds) -> list[str]:
-    """Lines of a table: means over packings with the deviation of one, beside the experiment."""
+def table(levels: dict[str, Beds]) -> list[str]:
+    """Lines of a table: means over packings with the deviation of one, by bed and level, beside the experiment."""
     names = ("solid fraction", "pore pressure", "half a length", "run-out", "height")
-    lines = ["| | packings | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
-    for made, many in sorted(runs.items()):
-        found = {name: np.array([numbers(one)[name] for one in many]) for name in names}
-        cells = [spread(values) for values in found.values()]
-        lines.append(f"| {made} | {len(many)} | " + " | ".join(cells) + " |")
+    lines = ["| | level | packings | " + " | ".join(names) + " |", "|---" * (len(names) + 3) + "|"]
+    for made in sorted({made for runs in levels.values() for made in runs}):
+        for level, many in ((level, runs[made]) for level, runs in levels.items() if made in runs):
+            found = {name: np.array([numbers(one)[name] for one in many]) for name in names}
+            cells = [spread(values) for values in found.values()]
+            lines.append(f"| {made} | {level} | {len(many)} | " + " | ".join(cells) + " |")
         if made in EXPERIMENT:
-            lines.append(f"| experiment, {made} | | " + " | ".join(f"{v:.3g}" for v in observed(made).values()) + " |")
+            lines.append(
+                f"| experiment, {made} | | | " + " | ".join(f"{v:.3g}" for v in observed(made).values()) + " |"
+            )
     return lines
 
 
-def write(runs: Beds, commit: str) -> None:
-    """Picture and table, with date and commit, into this folder: between the marks of the README."""
-    draw(runs, HERE / "compare.png")
+def write(levels: dict[str, Beds], made_by: dict[str, str]) -> None:
+    """Picture and table, with date and commits, into this folder: between the marks of the README."""
+    draw(list(levels.values())[-1], HERE / "compare.png")
     readme = HERE / "README.md"
     head, _, rest = readme.read_text(encoding="utf-8").partition("<!-- compare -->")
     tail = rest.partition("<!-- end of compare -->")[2]
-    at = f" at commit {commit}" if commit else ""
-    made = f"Made on {datetime.date.today().isoformat()}{at} by `compare.py`, quality draft."
-    block = "\n".join(["<!-- compare -->", *table(runs), "", made, "<!-- end of compare -->"])
+    by = ", ".join(f"{level} at commit {commit or '–'}" for level, commit in made_by.items())
+    made = f"Made on {datetime.date.today().isoformat()} by `compare.py`: {by}."
+    block = "\n".join(["<!-- compare -->", *table(levels), "", made, "<!-- end of compare -->"])
     readme.write_text(head + block + tail, encoding="utf-8")
 
 
 def main() -> None:
     """Write the picture, print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, help="of the sweep")
+    parser.add_argument("folders", type=Path, nargs="+", help="of the sweeps")
     parser.add_argument("--write", action="store_true", help="picture and table into the README of the case")
     asked = parser.parse_args()
-    runs, commits = read(asked.folder)
-    if len(commits) != 1:
-        raise SystemExit(f"{asked.folder}: finished runs of {len(commits)} commits, where one is needed")
+    levels: dict[str, Beds] = {}
+    made_by: dict[str, str] = {}
+    for folder in asked.folders:
+        runs, found = read(folder)
+        if len(found) != 1:
+            raise SystemExit(f"{folder}: finished runs of {len(found)} qualities and commits, where one is needed")
+        ((level, commit),) = found
+        levels[level], made_by[level] = runs, commit
     if asked.write:
-        write(runs, *commits)
+        write(levels, made_by)
     else:
-        draw(runs, asked.folder / "compare.png")
-    print("\n".join(table(runs)))
+        draw(list(levels.values())[-1], asked.folders[-1] / "compare.png")
+    print("\n".join(table(levels)))
 
 
 if __name__ == "__main__":

@@ -106,9 +106,11 @@ class Maker:
     """A device that says how fast its memory is: 1 GHz, 512 bits, two transfers a clock."""
 
     MEMORY_CLOCK_RATE, GLOBAL_MEMORY_BUS_WIDTH = 10**6, 512
+    compute_capability, name = (9, 0), "Maker"
 
 
-def test_check_says_what_the_gpu_needs_and_that_its_gain_is_unknown():
+def test_check_says_what_the_gpu_needs_and_that_its_gain_is_unknown(monkeypatch):
+    monkeypatch.setattr(cuda, "makers_bandwidth", lambda: None)
     said = str(report(Scene(**ON_GPU)))
     assert "memory of the GPU" in said
     assert "time on the CPU" in said
@@ -139,7 +141,7 @@ def single():
 def test_what_a_gpu_did_is_remembered_apart_from_the_cpu(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     scene, derived = Scene(**ON_GPU), derive(Scene(**ON_GPU))
-    on_cpu, on_gpu = work(scene, derived), work(scene, derived, cuda.SIMULATOR)
+    on_cpu, on_gpu = work(scene, derived), work(scene, derived, cuda.describe()[0])
     guess = expected(on_cpu)
     remember(on_gpu, {STEPS: 3.0 * on_gpu.seconds[STEPS]}, moment())
     assert expected(on_cpu) == guess

@@ -80,6 +80,7 @@ NO_SUBJECT = {
     "column_collapse_table1/scene.toml": "is there to be refused",
     "collapsing_water_column/trade.toml": "of a study, not a scene",
     "column_collapse/lambda.py": "reads a sweep of the scene beside it",
+    "column_collapse/levels.py": "reads sweeps of the scene beside it",
     "column_collapse/trade.toml": "of a study, not a scene",
     "loose_and_dense_collapse/compare.py": "reads a sweep of the scene beside it",
     "micro_to_macro/compared.py": "imported by the script beside it",

@@ -34,7 +34,7 @@ from porescale.coupling.device.tiles import TILE_HEIGHT, TILE_WIDTH, TileLists, 
 from porescale.lbm.fluid import Fluid
 
 THREADS = 128
-"""Of a block, but for cells; not tuned, since no device was at hand."""
+"""Of a block, but for cells; not tuned."""
 SENT_ALWAYS, SENT = 8, 15
 """Numbers a body that are sent up in every step, and where one has moved."""
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import inline, kernel
 
 TILE_WIDTH, TILE_HEIGHT = 32, 8
-"""Cells of a tile: those of a block of threads, whose warps take rows of it; not tuned, since no device was at hand."""
+"""Cells of a tile: those of a block of threads, whose warps take rows of it; not tuned."""
 
 
 class TileLists(NamedTuple):

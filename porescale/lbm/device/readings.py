@@ -18,7 +18,7 @@ Moments = tuple[NDArray[np.floating], NDArray[np.floating], NDArray[np.floating]
 BAND = 32
 """Rows whose moments are fetched at a time."""
 THREADS = 128
-"""Threads of a block; not tuned, since no device was at hand."""
+"""Threads of a block; not tuned."""
 
 
 def add_blocks_there(f: Any, n: Any, parity: Any, force: Any, start: Any, out: Any) -> None:

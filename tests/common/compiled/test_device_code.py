@@ -72,3 +72,15 @@ def test_functions_on_vectors_become_those_on_numbers():
     assert root(2.0) == math.sqrt(2.0)
     assert cuda._globals_of(root) == {"np"}
     assert cuda._meaning(simd.maximum, object, np.float64)(1.0, 2.0) == 2.0
+
+
+def test_products_are_not_fused_at_the_link(monkeypatch):
+    """The function comes with its options: numba-cuda 0.30 forgets one of them where it decorates."""
+    given = []
+    monkeypatch.setattr(cuda, "cuda", lambda: SimpleNamespace(jit=lambda *a, **options: given.append((a, options))))
+    monkeypatch.setattr(cuda, "simulated", lambda: False)
+    cuda.jit(math.sqrt, device=True)
+    assert given == [((math.sqrt,), {"device": True, "lto": False})]
+    monkeypatch.setattr(cuda, "simulated", lambda: True)  # whose ``jit`` has no such option
+    cuda.jit(math.sqrt)
+    assert given[1] == ((math.sqrt,), {})

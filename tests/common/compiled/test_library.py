@@ -60,6 +60,18 @@ def test_what_kernels_call_has_no_machine_code_of_its_own_unless_python_calls_it
     assert said.splitlines() == ["6 [False] [True]", "3 [False] [True]"]
 
 
+def test_what_is_merged_is_optimised_in_its_caller_and_what_need_not_be_by_itself_too(tmp_path):
+    """An inline function, and a kernel that another calls: the check on one fails on the other."""
+    code = (
+        "from tests.common.compiled import test_library as it\n"
+        "it.twice(it.EVEN, it.EVEN.copy())\n"
+        "made = [it.halved.inner, it.total_of_halves.inner, it.halve.inner, it.twice.compiled]\n"
+        "print([[lib.library._optimised for lib in one.overloads.values()] for one in made])"
+    )
+    said = done([sys.executable, "-c", code], env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}).stdout
+    assert said.splitlines() == ["[[False], [True], [True], [True]]"]
+
+
 def test_loops_over_threads_may_be_called_from_kernels():
     half = np.zeros(3, int)
     assert twice(EVEN, half) == 12

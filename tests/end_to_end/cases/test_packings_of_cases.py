@@ -69,6 +69,26 @@ def test_lambda_reads_the_runs_of_a_sweep_up_to_its_end_and_mixes_no_commits(tmp
     assert made.swept([tmp_path]) == {}
 
 
+def test_levels_differ_packing_by_packing(tmp_path, monkeypatch):
+    """Packings differ by more than levels do: that cancels where the seeds are the same."""
+    made = script("column_collapse/levels.py")
+    head = ["name", "outcome", "grains.packing.seed", *made.SHOWN]
+    for level, shift in (("draft", 0.5), ("fine", 0.0)):
+        (tmp_path / level).mkdir()
+        rows = [f"seed={k},finished,{k}," + ",".join([str(k + shift)] * len(made.SHOWN)) for k in (1, 2, 3)]
+        (tmp_path / level / "sweep.csv").write_text("\n".join([",".join(head), *rows, "seed=4,unstable,4"]))
+    monkeypatch.setattr(
+        ps,
+        "open_run",
+        lambda path: opened({"quality": path.parent.name, "outcome": "", "commit": "a"}, series={})(path),
+    )
+    levels, commits = made.read([tmp_path / "draft", tmp_path / "fine"])
+    assert commits == {"a"}
+    assert made.table(levels)[2] == "| half of the fall (s) | 2.5 ± 1 | 2 ± 1 | +0.5 ± 0 |"
+    del levels["draft"]["1"]
+    assert made.table(levels)[2].endswith("| +0.5 |")  # two packings have no interval
+
+
 def test_a_bed_that_never_gets_there_has_no_mean_in_its_table():
     made = script("loose_and_dense_collapse/compare.py")
     assert made.spread([12.0, 14.0]) == "13 ± 1"
@@ -77,7 +97,7 @@ def test_a_bed_that_never_gets_there_has_no_mean_in_its_table():
     time = np.linspace(0.0, 1.0, 41)
     still = np.array([time, 0 * time + 0.024, 0 * time + 0.0168, 0 * time + 300.0]).T
     one = {"fraction": 0.8, "rows": still, "profile": {0.001: 0.01, 0.002: 0.01}}
-    row = next(line for line in made.table({"dense": [one, one]}) if line.startswith("| dense"))
+    row = next(line for line in made.table({"draft": {"dense": [one, one]}}) if line.startswith("| dense"))
     assert "| never |" in row
     assert "inf" not in row
     assert "nan" not in row
@@ -94,7 +114,7 @@ def test_beds_are_told_apart_and_not_mixed_over_commits(tmp_path, monkeypatch, p
         (tmp_path / name / "card.json").write_text("{}")
     settle, friction = packing
     card = {"scene": {"grains": {"packing": {"settle": settle, "settling_friction": friction}}}}
-    card |= {"outcome": "finished", "commit": "a"}
+    card |= {"outcome": "finished", "quality": "draft", "commit": "a"}
     time = np.linspace(0.0, 0.9, 5)
     tables = {
         "series": {"time (s)": time, "front (m)": 0.024 + time, "highest grain (m)": 0.02 - 0.01 * time},
@@ -102,8 +122,8 @@ def test_beds_are_told_apart_and_not_mixed_over_commits(tmp_path, monkeypatch, p
         "profile": {"time (s)": time, "height at x = 0.001 m (m)": 0.01 + time},
     }  # fmt: skip
     monkeypatch.setattr(ps, "open_run", opened(card, **tables))
-    beds, commits = made.read(tmp_path)
-    assert (list(beds), len(beds[bed]), commits) == ([bed], 2, {"a"})
+    beds, made_by = made.read(tmp_path)
+    assert (list(beds), len(beds[bed]), made_by) == ([bed], 2, {("draft", "a")})
     one = beds[bed][0]
     assert one["fraction"] == pytest.approx(0.8)
     assert one["profile"] == {0.001: pytest.approx(0.91)}
@@ -113,7 +133,7 @@ def test_beds_are_told_apart_and_not_mixed_over_commits(tmp_path, monkeypatch, p
     cards = iter([card, card | {"commit": "b"}])
     monkeypatch.setattr(ps, "open_run", lambda path: opened(next(cards), **tables)(path))
     monkeypatch.setattr("sys.argv", ["compare.py", str(tmp_path)])
-    with pytest.raises(SystemExit, match="finished runs of 2 commits, where one is needed"):
+    with pytest.raises(SystemExit, match="finished runs of 2 qualities and commits, where one is needed"):
         made.main()
 
 

@@ -119,7 +119,7 @@ def test_a_whole_run_is_that_of_the_cpu_and_with_another_operator_it_is_not(pore
         assert porescale("run", "scene.toml", "--out", name, "--quiet", *words)[0] == 0
     assert same("gpu", "cpu")
     assert not same("other", "cpu")
-    assert json.loads(Path("gpu/card.json").read_text())["device"]["name"] == cuda.SIMULATOR
+    assert json.loads(Path("gpu/card.json").read_text())["device"]["name"] == cuda.describe()[0]
 
 
 def test_an_unstable_run_stops_with_the_line_of_the_cpu_and_keeps_its_last_good_state(porescale, monkeypatch):
