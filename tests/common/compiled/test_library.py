@@ -72,6 +72,20 @@ def test_what_is_merged_is_optimised_in_its_caller_and_what_need_not_be_by_itsel
     assert said.splitlines() == ["[[False], [True], [True], [True]]"]
 
 
+def test_options_are_equal_and_hashed_as_numba_has_it():
+    """Set to the default is equal to not set; another value is not: the check that must fail."""
+    from numba.core.compiler import Flags
+
+    compiler()
+    plain, same, other = Flags(), Flags(), Flags()
+    same.forceinline = Flags().forceinline
+    other.forceinline = not Flags().forceinline
+    assert (plain == same, plain == other, plain == other.copy(), other == other.copy()) == (True, False, False, True)
+    assert plain != "options"
+    for options in (plain, same, other):
+        assert hash(options) == hash(tuple(sorted(options.values())))
+
+
 def test_loops_over_threads_may_be_called_from_kernels():
     half = np.zeros(3, int)
     assert twice(EVEN, half) == 12
