@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from porescale.builders.checks.device import device_of
+from porescale.builders.checks.device import device_of, require_device_of
 from porescale.builders.cost import require_memory
 from porescale.builders.derive import derive
 from porescale.builders.initial.fluid import coupled_of, fluid_of
@@ -36,6 +36,7 @@ def system_of(scene: Scene) -> System:
     """Fluid and grains of ``scene`` at time 0; raises InputError."""
     derived = derive(scene)
     require_memory(derived)
+    require_device_of(scene)
     made = System(scene, derived, Clock(derived.model_step), frames=frames_of(scene, derived))
     if scene.grains or scene.disc or scene.rectangle or scene.ring:
         made.grains, made.recorded = grains_of(scene, derived, made.frames)

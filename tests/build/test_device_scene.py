@@ -81,6 +81,16 @@ def test_without_a_gpu_a_run_is_refused_in_one_line(monkeypatch):
     assert refused.value.code == 2
 
 
+def test_without_a_gpu_a_scene_is_refused_before_its_grains_are_packed(monkeypatch):
+    monkeypatch.setattr("porescale.builders.build.grains_of", lambda *_: pytest.fail("grains were packed"))
+    with pytest.raises(pytest.fail.Exception):
+        build(Scene(**GRAINS_ON_GPU))
+    monkeypatch.setattr(cuda, "simulated", lambda: False)
+    monkeypatch.setattr(cuda, "cuda", lambda: type("Machine", (), {"is_available": staticmethod(lambda: False)}))
+    with pytest.raises(InputError, match="there is no GPU here"):
+        build(Scene(**GRAINS_ON_GPU))
+
+
 def test_memory_that_does_not_suffice_is_one_line(monkeypatch):
     def full(_):
         raise RuntimeError("Call to cuMemAlloc results in CUDA_ERROR_OUT_OF_MEMORY")

@@ -25,6 +25,14 @@ def device_of(scene: Scene) -> str:
     return scene.run.device if scene.run else "cpu"
 
 
+def require_device_of(scene: Scene) -> None:
+    """InputError where the scene's fluid is stepped on a GPU and none can be used."""
+    if device_of(scene) != "cpu":
+        from porescale.common.compiled.cuda import require_device
+
+        require_device()
+
+
 def gpu_of(scene: Scene) -> tuple[str, str]:
     """Name of the GPU that steps the fluid of a scene and the version of its driver; both "" where none does."""
     if device_of(scene) == "cpu":
