@@ -51,7 +51,7 @@ def ordered(discs: Discs) -> Discs:
 
 
 def float64_only(dtype: Dtype) -> None:
-    """InputError for float32."""
+    """InputError for float32, in which an overlap has few digits."""
     if dtype != "float64":
         raise InputError(Fault("--dtype", dtype, "overlaps are 1e-3 of positions and less", allowed="float64 for dem"))
 

@@ -38,7 +38,7 @@ class Moment(NamedTuple):
 
 
 def moment() -> Moment:
-    """Now."""
+    """Clock, seconds on a core and waiting, and what was compiled so far, now."""
     return Moment(clock.perf_counter(), *scheduled(), TURNS.seconds, TURNS.count)
 
 

@@ -162,7 +162,7 @@ class DeviceFluid(Fluid):
             yield
 
     def set_flow(self, ux: Any, uy: Any, density: Any = 1.0) -> None:
-        """As ``Fluid.set_flow``."""
+        """As ``Fluid.set_flow``; the device has it with the next step."""
         super().set_flow(ux, uy, density)
         self._sent, self._fetched = False, True
 
@@ -171,12 +171,12 @@ class DeviceFluid(Fluid):
         raise ValueError("a fluid on the device has no body force of every cell")
 
     def set_side_velocity(self, side: str, velocity: Any) -> None:
-        """As ``Fluid.set_side_velocity``."""
+        """As ``Fluid.set_side_velocity``; sent to the device at once."""
         super().set_side_velocity(side, velocity)
         self._send_sides()
 
     def set_side_density(self, side: str, density: float) -> None:
-        """As ``Fluid.set_side_density``."""
+        """As ``Fluid.set_side_density``; sent to the device at once."""
         super().set_side_density(side, density)
         self._send_sides()
 
