@@ -6,7 +6,8 @@ Fluids 17 (2005) 103302: glass beads), with the constants that Lagrée, Staron &
 give: (L∞ - L)/L = c a below a hand-over, d a^(2/3) above, a = H/L.
 
 Nothing is fitted.  A slope of a material lies at its angle of repose, and soil without dilatancy slides on slopes
-beyond tan β = sin φ, so sin φ is the tangent of that angle.
+beyond tan β = sin φ, so sin φ is the tangent of that angle: 30° of sand and 22° of glass beads, as is usual of them
+(the experiments' own angles were not looked up).
 """
 
 import functools
