@@ -156,7 +156,8 @@ def measure(
     )  # fmt: skip
     wet = SaturatedCells(fluid, size, **given)
     reach = wet.covering_radius
-    mirrored = ((low == "slip") & (at[:, 1] < reach)) | ((high == "slip") & (at[:, 1] > cells[1] - reach))
+    below, above = (not whole[1] and not wall for wall in walls)  # flanks that are mirrors
+    mirrored = (below & (at[:, 1] < reach)) | (above & (at[:, 1] > cells[1] - reach))
     wet.cut = np.flatnonzero(mirrored)
     k, share, steady = _flow(fluid, wet, at, length, margin)
     return Measured(

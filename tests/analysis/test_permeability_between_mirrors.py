@@ -5,6 +5,7 @@ import pytest
 
 from porescale.analysis import permeability
 from porescale.analysis.permeability import STEADY, Measured, measure
+from porescale.coupling.psm import SaturatedCells
 
 D, PITCH = 10, 14  # cells: an even pitch has discs lie alike in their cells, wherever a row of them is cut
 
@@ -24,7 +25,7 @@ NOTHING = property(lambda _: np.zeros(0, int), lambda *_: None)
 @pytest.fixture
 def uncut(monkeypatch):
     """Discs that are cut are corrected as if they were whole."""
-    monkeypatch.setattr(permeability.SaturatedCells, "cut", NOTHING, raising=False)
+    monkeypatch.setattr(SaturatedCells, "cut", NOTHING, raising=False)
 
 
 def test_an_array_cut_through_its_centres_lets_through_what_the_periodic_one_does():
