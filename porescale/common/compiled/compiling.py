@@ -29,7 +29,7 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataC
 from numba.core.errors import NumbaWarning
 from numba.extending import intrinsic, overload
 
-from porescale.common.compiled import library, quicker
+from porescale.common.compiled import library
 from porescale.common.compiled.cache import keep_only_used, mark_used, writable
 from porescale.common.compiled.jit import GIVEN, body_for, cache_folder, prange, prefetch, thread, unchecked_view
 from porescale.common.compiled.kernel_key import Unknown, key_of, warning
@@ -44,7 +44,6 @@ _KEPT = writable(cache_folder())
 _FLAGS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 _INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True, **library.INNER}
 library.use()
-quicker.use()
 _MEANT = {"prange": (prange, numba.prange), "thread": (thread, vars(numba)["get_thread_id"])}
 """What kernels import from jit.py under names for which numba accepts its own objects only."""
 

@@ -109,10 +109,9 @@ def _hash_of_options(options: Any) -> int:
 
 def _equal_options(one: Any, other: Any) -> Any:
     """Whether all options are the same; compares those that were not set only where the others differ."""
-    if type(one) is not type(other):
-        return _equal_by_all(one, other)
-    ones, others = one._values, other._values
-    return ones == others or all(getattr(one, it) == getattr(other, it) for it in ones.keys() | others.keys())
+    if type(one) is type(other) and one._values == other._values:
+        return True
+    return _equal_by_all(one, other)
 
 
 _body_of_loop = parfor_lowering._create_gufunc_for_parfor_body
