@@ -130,19 +130,14 @@ def image(d, period):
 
 
 @inline
-def scaled(value, factor):
-    """The product of ``value`` and ``factor``; None where ``value`` is."""
-    if value is None:
-        return None
-    return value * factor
+def plus_scaled(value, factor, share, more):
+    """value + factor · share · more; ``value`` itself where ``factor`` is None.
 
-
-@inline
-def plus_scaled(value, factor, more):
-    """value + factor · more; ``value`` itself where ``factor`` is None."""
+    One function: where one gives a number or None, numba takes that for either wherever it is read.
+    """
     if factor is None:
         return value
-    return value + factor * more
+    return value + factor * share * more
 
 
 @inline

@@ -79,7 +79,7 @@ def carried(drift, gradient, choices, i):
     """Rate of density, kg/(m³ s), and power of gravity per mass, W/kg, that shifting gives particle i: 0 without."""
     if drift is None:
         return 0.0, 0.0
-    lifted = plus_scaled(choices.gravity_y * drift[i, 1], choices.gravity_x, drift[i, 0])
+    lifted = plus_scaled(choices.gravity_y * drift[i, 1], choices.gravity_x, 1.0, drift[i, 0])
     return drift[i, 0] * gradient[i, 0] + drift[i, 1] * gradient[i, 1], lifted
 
 

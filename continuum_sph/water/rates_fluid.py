@@ -1,6 +1,6 @@
 """What the partners in the fluids do to one particle: the sums of `rates` over them, several at a time."""
 
-from continuum_sph.water.bundles import inverse_period, nearest_image, plus_scaled, scaled
+from continuum_sph.water.bundles import inverse_period, nearest_image, plus_scaled
 from continuum_sph.water.density import HYDROSTATIC, LINEAR, diffusion_share, noise_scale
 from continuum_sph.water.fluids import COHESION, SOUND, VISCOSITY, fluid_number, pair_fluid
 from continuum_sph.water.smoothing import kernel_kind, slope_scale, slope_shape, value_scale, value_shape
@@ -21,7 +21,7 @@ def fluid_sums(i, record, near, fluids, gradients, choices):
     inverse_h, scale_h = 1.0 / h, slope_scale(kind, h)
     inverse_noise_speed, sound_share = noise_scale(choices.noise_speed, h)
     level = 0.5 if choices.noise == HYDROSTATIC else 0.0
-    lift_x, lift_y = scaled(choices.gravity_x, level), level * choices.gravity_y
+    lift_y = level * choices.gravity_y
     turns_x, turns_y = inverse_period(near.period_x), inverse_period(near.period_y)
     xi, yi, vxi, vyi = record[i, X], record[i, Y], record[i, VX], record[i, VY]
     rho, pressure, compressibility = record[i, RHO], record[i, P], record[i, COMPRESSIBILITY]
@@ -44,7 +44,7 @@ def fluid_sums(i, record, near, fluids, gradients, choices):
         approach = vx * dx + vy * dy
         same, viscosity_j = pair_fluid(fluids.properties, near.partner, k, end, i)
         noise_part = part * diffusion_share(approach, inverse_noise_speed, sound_share) * same
-        lift = plus_scaled(lift_y * dy, lift_x, dx)
+        lift = plus_scaled(lift_y * dy, choices.gravity_x, level, dx)
         diffused += (rho - rho_j - (compressibility + compressibility_j) * lift) * noise_part
         diffused = less_linear(
             diffused, gradients.density, choices.noise, near.partner, k, end, i, (dx, dy), noise_part

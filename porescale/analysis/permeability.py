@@ -155,6 +155,10 @@ def measure(
         sides=Sides("periodic", "periodic", low, high), **(laws or {}),
     )  # fmt: skip
     wet = SaturatedCells(fluid, size, **given)
+    reach = wet.covering_radius
+    below, above = (not whole[1] and not wall for wall in walls)  # flanks that are mirrors
+    mirrored = (below & (at[:, 1] < reach)) | (above & (at[:, 1] > cells[1] - reach))
+    wet.cut = np.flatnonzero(mirrored)
     k, share, steady = _flow(fluid, wet, at, length, margin)
     return Measured(
         k * spacing**2, k / across**2, share, across * spacing, across, steady, fluid.step,

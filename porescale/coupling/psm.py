@@ -72,8 +72,9 @@ class SaturatedCells:
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
     them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
     that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;
-    they go as their owner says.  operator: the row of the solid operator.  A step allocates no array of the size of
-    anything.
+    they go as their owner says.  operator: the row of the solid operator.  cut: numbers of the discs that a free-slip
+    side across y cuts, set by the owner: with what the side mirrors such a disc makes one body that goes along x alone.
+    A step allocates no array of the size of anything.
     """
 
     def __init__(
@@ -163,6 +164,7 @@ class SaturatedCells:
         self.force, self.torque, self.entrained = self._load[:discs, :2], self._load[:discs, 2], self._entrained[:discs]
         self.polygon_load, self.polygon_entrained = self._load[discs:movers], self._entrained[discs:movers]
         self._slow_load, self._shift = np.zeros((count, 3)), np.zeros((count, 3))
+        self.cut = np.zeros(0, np.int64)
         self._direct = np.zeros((count, 2))
         self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * force
         if self.polygons:
@@ -327,7 +329,12 @@ class SaturatedCells:
         if self.driven:
             self._push_bodies()
         if self.operator.half_step_correction:
+            cut = self.cut
+            self._direct[cut] = -self._taken[cut, None] * self._drive[cut]  # of the part of a disc that is there
             half_step_correction(self._load, self._entrained, self._direct, LOW_PASS, self._slow_load, self._shift)
+            # Of a part, to move and to turn about the disc's centre are much the same: corrected for both, it is
+            # corrected twice, and runs away.
+            self._shift[cut, 1:] = 0.0
 
     def _sum_loads(self, fluid: Fluid) -> None:
         """The loads of the bodies from those of their rows."""

@@ -21,7 +21,7 @@ from numpy.typing import DTypeLike, NDArray
 from porescale.lbm.boundary.links import BoundaryLinks
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.boundary.thin_plate import Plate, exchange
-from porescale.lbm.collision.choose import choose, without_force
+from porescale.lbm.collision.choose import choose, convective_delay, without_force
 from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.collision.field import field_version
 from porescale.lbm.equilibrium import equilibrium
@@ -71,7 +71,7 @@ class Fluid:
         self.padded = padded_populations(nx, ny, dtype)
         self.populations: NDArray[np.floating] = self.padded[:, :, : nx + 2]
         self.flat = self.padded.reshape(-1)
-        self.links = BoundaryLinks(nx, ny, self.sides, dtype)
+        self.links = BoundaryLinks(nx, ny, self.sides, dtype, convective_delay(self.law))
         self.plates: list[Plate] = []
         self.step = 0
 

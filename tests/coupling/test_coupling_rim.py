@@ -15,7 +15,7 @@ from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.weighting.choose import choose_weight
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.validation.coupling.fast import STARTED, fast_starts, started
+from porescale.validation.coupling.fast import NOISE, STARTED, fast_starts, started
 from tests.reference.coupling.cylinder_start import CylinderStart
 
 VALIDATIONS = PACKAGE.validations()
@@ -180,6 +180,14 @@ def test_the_reference_is_the_body_fitted_solution(reynolds):
     times = np.linspace(2, 6, 9)
     drag = CylinderStart(reynolds, 56, 36, freeze=1.5, reach=8.0).run(6.0, 1200).drag(times)
     assert simpson(drag, x=times) / 4 == pytest.approx(STARTED[reynolds], rel=3e-4)
+
+
+def test_a_cylinder_set_moving_at_once_has_its_drag():
+    # The row's first case at 10 cells a diameter, one of the two sizes for which the rim's constants were chosen.
+    row = VALIDATIONS["coupling.fast_start"]
+    drag, noise = started(100, 10.0)
+    assert drag == pytest.approx(STARTED[100], rel=row.tolerance)
+    assert noise <= NOISE
 
 
 @pytest.mark.parametrize("options", [{"soft_rim": False}, {"soft_rim": False, "solid_operator": "odd-SC1"}])

@@ -91,6 +91,11 @@ def test_the_error_of_an_inlet_falls_at_second_order():
     assert np.log2(opened.inlet(8) / opened.inlet(16)) > 1.66
 
 
+def test_an_inlet_that_keeps_what_convection_adds_is_told_apart(monkeypatch):
+    monkeypatch.setattr(velocity, "_turned", lambda bounds, side, link: [])
+    assert 8**2 * opened.inlet(8, 0.003, 0.03, memories=2) > 3 * tolerance("lbm.parabola_from_a_fast_inlet")
+
+
 def test_a_plug_that_leaves_a_millionth_slower_is_told_apart():
     gained, _ = opened.plug(20, 10, 0.05, 0.05 * (1 - 1e-6), 1000)
     assert abs(gained) > 10 * tolerance("lbm.plug_balances")

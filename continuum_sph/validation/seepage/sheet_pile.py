@@ -207,7 +207,7 @@ def flow(given: SheetPile) -> tuple[float, float, float]:
     return discharge / given.discharge, gradient / given.exit_gradient, off
 
 
-SHARES = (0.2, 0.35, 0.5, 0.75, 0.9)
+SHARES = (0.2, 0.35, 0.5, 0.65, 0.75, 0.8, 0.9)
 """s/T."""
 
 

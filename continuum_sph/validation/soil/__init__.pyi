@@ -2,7 +2,8 @@
 from . import bodies as bodies
 from . import element as element
 from . import energy as energy
+from . import run_outs as run_outs
 from . import setups as setups
 from . import slopes as slopes
 
-__all__ = ["bodies", "element", "energy", "setups", "slopes"]
+__all__ = ["bodies", "element", "energy", "run_outs", "setups", "slopes"]

@@ -1,4 +1,5 @@
-"""Convergence of soil: the friction of an endless layer that slides, from a strewn lattice, at several spacings.
+"""Convergence of soil, at several spacings: the friction of an endless layer that slides, from a strewn lattice, and
+how far columns run out.
 
 Noise of stress takes friction away where each particle yields by its own mean stress, as much as diffusion leaves;
 by that of its surroundings most of it cancels.
@@ -7,6 +8,9 @@ by that of its surroundings most of it cancels.
 from functools import partial
 from typing import Any
 
+import numpy as np
+
+from continuum_sph.validation.soil.run_outs import BEADS, SAND, Grains, run_outs
 from continuum_sph.validation.soil.setups import TAN_PHI
 from continuum_sph.validation.soil.slopes import strewn_friction
 from porescale.common.evidence.convergence import Ladders
@@ -34,3 +38,19 @@ for name, title, because, options in (
     LADDERS.ladder(name, title=title, along="rows of particles", levels=(10, 20, 40, 80), because=because)(
         partial(friction_error, options)
     )
+
+
+def run_out_error(grains: Grains, rows: float) -> float:
+    """Largest |run-out over that of the experiments' law, less 1| of columns of H/L 0.5 to 4."""
+    return float(np.abs(run_outs(grains, int(rows)) - 1.0).max())
+
+
+for name, what, grains in (("sand", "sand", SAND), ("beads", "glass beads", BEADS)):
+    LADDERS.ladder(
+        f"soil.run_out_of_{name}",
+        title=f"Largest relative error of the run-outs of columns of {what}, H/L 0.5 to 4, from the experiments' law",
+        along="rows of particles to the root of a column's area",
+        levels=(10, 20, 40),
+        because="no order is expected: a law drawn through experiments is no limit; coarse deposits are few "
+        "particles deep, and a front is known to half a particle",
+    )(partial(run_out_error, grains))

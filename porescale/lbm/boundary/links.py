@@ -13,7 +13,7 @@ from porescale.lbm.boundary.velocity import VelocityLinks
 
 
 class BoundaryLinks:
-    """The links out of a box of nx by ny cells (cells 1 to n, halo 0 and n + 1).
+    """The links out of a box of nx by ny cells (cells 1 to n, halo 0 and n + 1);  delay: see velocity.py.
 
     halo, inner (k,): flat slots of each link but those that a kind of side settles itself;  added (k,): what it adds on
     the way in;  own: those of kinds that settle them, by name.
@@ -21,7 +21,7 @@ class BoundaryLinks:
     on.
     """
 
-    def __init__(self, nx: int, ny: int, sides: Sides, dtype: DTypeLike) -> None:
+    def __init__(self, nx: int, ny: int, sides: Sides, dtype: DTypeLike, delay: float) -> None:
         bounds = Bounds(nx, ny, sides)
         links = bounds.partners()
         partners = [bounds.owner(link).partner(bounds, link) for link in links]
@@ -29,7 +29,7 @@ class BoundaryLinks:
         self.halo: NDArray[np.int64] = np.array([bounds.flat(link.out, link.to) for link in links], np.int64)
         self.inner: NDArray[np.int64] = np.array([slot for slot, _ in partners], np.int64)
         self.added: NDArray[np.floating] = np.array([added for _, added in partners], dtype)
-        self.velocity = VelocityLinks(bounds, links)
+        self.velocity = VelocityLinks(bounds, links, delay)
         self.velocity.write(self.added)
         kinds = {sides.kind(side): sides.boundary(side) for side in NAMES}
         settled = {name: kind.own_links(bounds, dtype) for name, kind in kinds.items() if kind.settles}

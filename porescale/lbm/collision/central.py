@@ -92,6 +92,7 @@ OPERATOR = Operator(
     law=Central,
     eddy_law=EddyCentral,
     third_order_rate=lambda law: 1.0,
+    convective_delay=lambda law: 1 / float(law.rate) - 0.5,
     holds=Stability(5100.0, 5100.0, 62.0, 200000.0),  # in the open it held in all of the map
     soft_rim=True,
     order=2,

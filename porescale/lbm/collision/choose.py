@@ -54,3 +54,9 @@ def without_force(law: Any) -> Any:
 def third_order_rate(law: Any) -> float:
     """Rate of the antisymmetric moments that are not momentum, at the molecular viscosity, of an operator's law."""
     return _OF_LAW[type(law)].third_order_rate(law)
+
+
+def convective_delay(law: Any) -> float:
+    """By how many steps convection is late at a half-way wall that fluid passes, at the molecular viscosity."""
+    delay = _OF_LAW[type(law)].convective_delay
+    return 1 / third_order_rate(law) - 0.5 if delay is None else delay(law)

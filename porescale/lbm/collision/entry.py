@@ -28,9 +28,11 @@ class Operator:
     """A row of the register.
 
     name : in scenes;  purpose : what it is good for, one line;  law, eddy_law : its NamedTuples, without and with an
-    eddy viscosity (``eddy_version``);  third_order_rate : of a law, the rate of the antisymmetric moments that are not
-    momentum;  constants : values of further fields of the law (``magic`` is given by its user);  law_without_force :
-    with the same fields, for a force of zero;  holds : see ``Stability``, None where it was not measured;  soft_rim :
+    eddy viscosity (``eddy_version``);  third_order_rate : of a law, the rate s of the antisymmetric moments that are
+    not momentum;  convective_delay : of a law, by how many steps convection is late at a half-way wall that fluid
+    passes (boundary/velocity.py), None where it is 1/s - 1/2;  constants : values of further fields of the law
+    (``magic`` is given by its user);  law_without_force : with the same fields, for a force of zero;  holds : see
+    ``Stability``, None where it was not measured;  soft_rim :
     whether grains get soft rims with it unless the scene says otherwise;  order : place in lists.
     """
 
@@ -39,6 +41,7 @@ class Operator:
     law: Any
     eddy_law: Any
     third_order_rate: Callable[[Any], float]
+    convective_delay: Callable[[Any], float] | None = None
     constants: Mapping[str, float] = field(default_factory=dict)
     law_without_force: Any = None
     holds: Stability | None = None

@@ -40,6 +40,13 @@ def test_water_passes_a_dam_too_fast_under_the_printed_drag(monkeypatch):
 
 
 @pytest.mark.slow
+def test_a_short_dam_that_lets_much_through_lets_less_through_than_darcy_says():
+    # Four times the permeability of the row: what inertia and viscosity take of the flow goes with it.
+    into, out, _ = dam.dam.__wrapped__(Dam(length=0.5, permeability=4.0 * 0.5 * dam.CALM), (2.0, 6.0))
+    assert 1.0 - 0.5 * (into + out) > tolerance("continuum.dam_50")
+
+
+@pytest.mark.slow
 def test_water_enters_soil_too_fast_under_the_printed_drag(monkeypatch):
     monkeypatch.setattr(Resistance, "factor", PRINTED)
     (found,) = infiltration.fronts(replace(DRAWN, rows=20), (0.3,))

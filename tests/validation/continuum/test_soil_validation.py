@@ -1,12 +1,14 @@
 """What must fail where rows of soil hold, and the cases of soil at their default quality."""
 
+import math
 from functools import partial
 
+import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.soil import Material
-from continuum_sph.validation.soil import bodies, element, energy, setups, slopes
+from continuum_sph.validation.soil import bodies, element, energy, run_outs, setups, slopes
 from tests.reference.continuum import continuum_cases
 from tests.reference.continuum.continuum_cases import missed
 from tests.reference.folders import script
@@ -148,3 +150,23 @@ def test_soil_under_tension_without_repulsion_flies_to_pieces():
 def test_damping_that_goes_with_sound_makes_run_out_depend_on_stiffness():
     soft, stiff = energy.run_outs(rows=10, damping=0.05)
     assert soft - stiff > 3.0 * tolerance("continuum.soil_runs_out_alike_at_any_stiffness")
+
+
+@pytest.mark.slow
+def test_glass_beads_run_out_farther_than_sand():
+    found = run_outs.run_out(1.0, run_outs.BEADS.repose, 20) / run_outs.SAND.law(1.0)
+    assert found - 1.0 > 2.0 * tolerance("continuum.soil_runs_out_as_sand")
+
+
+@pytest.mark.slow
+def test_soil_that_wants_its_friction_angle_for_its_angle_of_repose_runs_out_too_far():
+    # sin 30° in place of tan 30°: slopes of it lie at 26.6°
+    sand = run_outs.SAND
+    gentle = math.degrees(math.atan(math.sin(math.radians(sand.repose))))
+    assert run_outs.run_out(1.0, gentle, 20) > 1.05 * run_outs.run_out(1.0, sand.repose, 20)
+
+
+def test_a_front_ends_before_a_gap():
+    x = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.6, 0.0]])
+    assert run_outs.front(x, 1.0, 0.5) == 2.5
+    assert run_outs.front(x, 1.1, 0.5) == 3.6 + 0.55

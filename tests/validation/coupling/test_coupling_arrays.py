@@ -64,6 +64,11 @@ def test_torques_and_slopes_of_turning_arrays_are_those_of_point_forces(cells, f
     assert math.log(ratio) / math.log(1.002) == pytest.approx(slope, rel=1e-3)
 
 
+def test_a_square_array_has_its_drag():
+    found = lab.square((0.2,), (1.0,), lab.REQUIRED)  # one of the row's three fractions
+    assert found.error <= tolerance("coupling.square_arrays")
+
+
 def test_places_are_spread_over_a_quarter_of_a_cell():
     at = np.array(lab.places(3))
     assert at.shape == (9, 2)
