@@ -52,7 +52,7 @@ def front(across: int, clears: float, pressure: str) -> np.ndarray:
 
 
 def main() -> int:
-    """Compute and say."""
+    """Print, for each way of release, how the front stands to the published ones."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--across", type=int, default=20, help="particles over the width (default: 20)")
     across = parser.parse_args().across

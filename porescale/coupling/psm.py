@@ -330,11 +330,13 @@ class SaturatedCells:
             self._push_bodies()
         if self.operator.half_step_correction:
             cut = self.cut
-            self._direct[cut] = -self._taken[cut, None] * self._drive[cut]  # of the part of a disc that is there
+            if len(cut):
+                self._direct[cut] = -self._taken[cut, None] * self._drive[cut]  # of the part of a disc that is there
             half_step_correction(self._load, self._entrained, self._direct, LOW_PASS, self._slow_load, self._shift)
-            # Of a part, to move and to turn about the disc's centre are much the same: corrected for both, it is
-            # corrected twice, and runs away.
-            self._shift[cut, 1:] = 0.0
+            if len(cut):
+                # Of a part, to move and to turn about the disc's centre are much the same: corrected for both, it is
+                # corrected twice, and runs away.
+                self._shift[cut, 1:] = 0.0
 
     def _sum_loads(self, fluid: Fluid) -> None:
         """The loads of the bodies from those of their rows."""

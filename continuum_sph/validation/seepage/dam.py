@@ -215,7 +215,9 @@ LENGTHS = (0.5, 1.0, 2.0, 4.0)
 CALM = 0.05
 """k over L/H1, m/s: the same discharge through all, 0.025 m²/s, little enough for Darcy's law.  Charny's is that of
 water without inertia and viscosity; at L = H1/2 three to four times as much leaves them 4 % of it."""
-CALM_SPAN = (7.0, 21.0)  # s, over which flow is taken for steady: storage relaxes by 0.4 n L²/k H1, 3 s at L = H1
+CALM_SPAN = (7.0, 21.0)
+"""Seconds over which flow is taken for steady: storage relaxes by 0.4 n L²/k H1, 3 s at L = H1 and 12 s at 4 H1, where
+in and out, 0.1 % apart, say that it has."""
 
 
 def length_row(length: float) -> None:

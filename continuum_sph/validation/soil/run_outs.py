@@ -99,8 +99,10 @@ DEGREE = math.radians(1.0) * 2.0 / math.sin(math.radians(2.0 * BEADS.repose))
 """What a degree of the angle of repose, as well as it is known, is worth where run-out goes as its 1/tan."""
 
 
-def run_out_row(name: str, grains: Grains, source: str) -> None:
-    """Add the row of the run-outs of ``grains``."""
+def run_out_row(name: str, grains: Grains, experiments: str) -> None:
+    """Add the row of the run-outs of ``grains``, of which there are ``experiments``."""
+    squat = f"{grains.squat:g} a to a = {grains.hand_over:g}"
+    source = f"{experiments}; {squat}, {grains.tall:g} a^(2/3) beyond; {grains.repose:g}°"
 
     @VALIDATIONS.row(
         f"continuum.soil_runs_out_as_{name}",
@@ -118,5 +120,5 @@ def run_out_row(name: str, grains: Grains, source: str) -> None:
         )
 
 
-run_out_row("sand", SAND, "Lube et al. 2005: sand, sugar, rice in a channel; 1.2 a to a = 2.3, 1.9 a^(2/3) beyond; 30°")
-run_out_row("beads", BEADS, "Lajeunesse et al. 2005: glass beads in a channel; 1.8 a to a = 3, 2.3 a^(2/3) beyond; 22°")
+run_out_row("sand", SAND, "Lube et al. 2005: sand, sugar, rice in a channel")
+run_out_row("beads", BEADS, "Lajeunesse et al. 2005: glass beads in a channel")

@@ -289,7 +289,7 @@ class Run(record.Run):
         return widget_bundle(self.widget()) if in_kernel() and self._has_widget() else {}
 
     def _display_(self) -> Any:
-        """What marimo shows."""
+        """What a cell of marimo shows: the widget, or the page where its extra is not installed."""
         return self.widget() if self._has_widget() else Html(self._repr_html_())
 
     def _repr_png_(self) -> bytes | None:

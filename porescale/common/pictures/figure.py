@@ -150,7 +150,7 @@ def _film(
     first, last = (float(runs[0].times[frames[k][0]]) for k in (0, -1))
 
     def painted(watch: Watch) -> Iterator[AnyArray]:
-        """Frame by frame."""
+        """The pictures of both runs at the times of ``frames``, each (height, width, 3), in order."""
         for row in frames:
             snapshots = [run.snapshot(k, found.look.cells) for run, k in zip(runs, row, strict=True)]
             watch.update(int(row[0]), snapshots[0].time)

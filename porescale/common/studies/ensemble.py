@@ -150,7 +150,7 @@ class Ensemble:
 
     @property
     def complete(self) -> bool:
-        """Whether all finished."""
+        """Whether all runs that were asked for came to their end."""
         return len(self.finished) == self.asked
 
     def said(self) -> str:

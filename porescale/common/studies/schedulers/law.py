@@ -16,7 +16,7 @@ OPTION = "--scheduler"
 
 
 class Scheduler(Protocol):
-    """Runs tasks."""
+    """What runs tasks: processes here, or the queue of a cluster."""
 
     def run(self, tasks: Sequence[Task], jobs: int | None, progress: Progress) -> Iterator[Done]:
         """Each task as it ends, in any order, each once.

@@ -54,7 +54,7 @@ def _word(name: str) -> Callable[[str], dict[str, Any]]:
 
 
 def _minutes(value: str) -> dict[str, Any]:
-    """A time limit."""
+    """The time limit ``value``, in whole minutes, rounded up; ValueError for what is no time or too short."""
     try:
         found = to_si(value, "s") / 60
     except ValueError:

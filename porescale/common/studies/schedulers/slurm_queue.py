@@ -103,7 +103,7 @@ class Queue:
         job.paths.result_pickle.unlink(missing_ok=True)
 
     def cancel(self, numbers: Sequence[str]) -> None:
-        """End these jobs."""
+        """End the jobs of these ``numbers``; what scancel says of ones that ended is not read."""
         subprocess.run(["scancel", *numbers], capture_output=True, timeout=PATIENCE, check=False)
 
     def _defaults(self) -> dict[str, str]:
