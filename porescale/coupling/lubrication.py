@@ -2,17 +2,20 @@
 
 Two cylinders that close at V_n over a gap g << R* = R1 R2/(R1 + R2) (a wall: R* = R) resist with
 3 sqrt(2) pi mu (R*/g)^(3/2) V_n per metre of depth (Jeffrey & Onishi 1981; the limit of 4 pi mu V/(alpha - tanh alpha),
-alpha = arccosh(1 + g/R), as alpha goes to 0).  The lattice bears all of films of a few cells and nothing of those of no
-thickness.  The share that it lacks at x = g/h cells,
+alpha = arccosh(1 + g/R), as alpha goes to 0).  The lattice bears the film of a gap g + d: it feels thin films as wider
+by a share of a cell, and discs cover cells with the radius R + A/R, so that their gap there is narrower by
+A (1/R1 + 1/R2) = A/R*.  What it lacks,
 
-    lack(x) = (1 - x/3)²/(1 + 0.4 x + 0.77 x²),
-    dF = -3 sqrt(2) pi mu (R*/g)^(3/2) lack(g/h) V_n,     0 < g < g_c,
+    d = (D h - A/R*)(1 - g/3h)^p, not below 0,      D, p: 0.37, 1 between discs, 0.48, 3 at a wall,
+    dF = -3 sqrt(2) pi mu ((R*/g)^(3/2) - (R*/(g + d))^(3/2)) V_n,     0 < g < g_c,
 
-is added here.  lack was measured with exact walls, on discs 20 cells wide that close on a wall and on each other at
-random angles and places, at gaps of 0.1 to 2 cells: force and correction are within 5 % of the exact force, at tau 0.6
-to 1, too.  It acts in the contact steps dt, velocities half a step back: stable for six films around the lighter disc
-(of mass m), each against a neighbour as light, if C dt <= m/3 (integrate.packing_factor with a damping alone:
-2 * 3 C/m <= 2/dt), which sets the thinnest film
+is added here;  A: 1.5 h² times the magic parameter (solid/exact_wall.py).  D and p were measured with exact walls, on
+discs 8 to 30 cells wide that close on each other at random angles and places, and 8 to 20 cells wide on a wall, which
+is two outlines that end within cells, and one; A/R* is derived.  The mean of force and correction over angles and
+places is within 5 % of the exact force, at tau 0.6 to 1, too, but where discs come so near that they share full cells,
+g - A/R* < 0.08 h.  It acts in the contact steps dt, velocities half a step back: stable for six films around the
+lighter disc (of mass m), each against a neighbour as light, if C dt <= m/3 (integrate.packing_factor with a damping
+alone: 2 * 3 C/m <= 2/dt; C is at most that of the whole film), which sets the thinnest film
 
     g_min = R* (9 sqrt(2) pi mu dt/m)^(2/3);     thinner ones count as g_min, touching ones as none.
 
@@ -36,35 +39,40 @@ FILM = 3 * math.sqrt(2) * math.pi
 """Force over mu V_n (R*/g)^(3/2)."""
 
 
+BETWEEN_DISCS, AT_A_WALL = (0.37, 1), (0.48, 3)
+"""D, cells by which the thinnest films are wider to the lattice than between the outlines that it has, and p."""
+
+
 class FilmLaw(NamedTuple):
     """viscosity : dynamic, Pa s;  spacing : h, m;  cut : g_c, m, at most 3 h: beyond nothing is added;  dt : contact
-    step, s."""
+    step, s;  shift : A, m²: the radius that a disc covers cells with is larger by A over it."""
 
     viscosity: float
     spacing: float
     cut: float
     dt: float
+    shift: float
 
 
 @inline
-def lack(cells):
-    """Share of a film's force that the lattice lacks at a gap of so many ``cells``, 0 to 3."""
-    left = 1.0 - cells / CELLS
-    return left * left / (1.0 + 0.4 * cells + 0.77 * cells * cells)
+def wider(gap, radius, measured, law):
+    """By how much (m) the ``gap`` (m) of the film that the lattice bears is wider; 0 at 3 h.  See ``film``."""
+    cells, power = measured
+    return max(0.0, cells * law.spacing - law.shift / radius) * (1.0 - gap / (CELLS * law.spacing)) ** power
 
 
 @inline
-def film(gap, radius, mass, law):
+def film(gap, radius, mass, measured, law):
     """Force over closing speed, N s/m², of a film ``gap`` thick (m) between surfaces of reduced ``radius`` (m).
 
-    mass kg/m: of the lighter;  law: ``FilmLaw``.
+    mass kg/m: of the lighter;  measured: ``BETWEEN_DISCS`` or ``AT_A_WALL``;  law: ``FilmLaw``.
     """
-    viscosity, spacing, cut, dt = law
-    if not 0.0 < gap < cut:
+    if not 0.0 < gap < law.cut:
         return 0.0
-    thinnest = radius * (3.0 * FILM * viscosity * dt / mass) ** (2.0 / 3.0)
+    thinnest = radius * (3.0 * FILM * law.viscosity * law.dt / mass) ** (2.0 / 3.0)
     thick = max(gap, thinnest)
-    return FILM * viscosity * (radius / thick) ** 1.5 * lack(thick / spacing)
+    whole, borne = radius / thick, radius / (thick + wider(thick, radius, measured, law))
+    return FILM * law.viscosity * (whole * np.sqrt(whole) - borne * np.sqrt(borne))
 
 
 @kernel
@@ -89,7 +97,8 @@ def add_films(position, velocity, radius, mass, start, partner, period, walls, l
                 nx, ny = dx / distance, dy / distance
                 closing = (velocity[i, 0] - velocity[j, 0]) * nx + (velocity[i, 1] - velocity[j, 1]) * ny
                 lighter = min(mass[i], mass[j])
-                push = closing * film(distance - reach, radius[i] * radius[j] / reach, lighter, law)
+                reduced = radius[i] * radius[j] / reach
+                push = closing * film(distance - reach, reduced, lighter, BETWEEN_DISCS, law)
                 force[i, 0] -= push * nx
                 force[i, 1] -= push * ny
                 force[j, 0] += push * nx
@@ -99,7 +108,7 @@ def add_films(position, velocity, radius, mass, start, partner, period, walls, l
             gap = (position[i, 0] - walls[w, 0]) * nx + (position[i, 1] - walls[w, 1]) * ny - radius[i]
             if 0.0 < gap < cut:
                 leaving = velocity[i, 0] * nx + velocity[i, 1] * ny
-                push = -leaving * film(gap, radius[i], mass[i], law)
+                push = -leaving * film(gap, radius[i], mass[i], AT_A_WALL, law)
                 force[i, 0] += push * nx
                 force[i, 1] += push * ny
 
@@ -107,19 +116,18 @@ def add_films(position, velocity, radius, mass, start, partner, period, walls, l
 class Lubrication:
     """The films of a system of grains.
 
-    radius (n,) m: those between which gaps lie;  viscosity: dynamic, Pa s;  spacing: of the lattice, m;
-    cut: g_c, m;  dt: contact step, s.
+    radius (n,) m: those between which gaps lie;  viscosity, spacing, cut, dt, shift: as ``FilmLaw`` has them.
     force (n, 2) N/m: of the films on each disc, mean over the last call of ``step``.
 
     Raises InputError when the contact step allows no film thinner than ``cut``.
     """
 
     def __init__(
-        self, grains: Grains, radius: Floats, *, viscosity: float, spacing: float, cut: float, dt: float
+        self, grains: Grains, radius: Floats, *, viscosity: float, spacing: float, cut: float, dt: float, shift: float
     ) -> None:
         cut = min(cut, CELLS * spacing)
         self.radius, self.viscosity, self.cut, self.dt = radius, viscosity, cut, dt
-        self._law = FilmLaw(viscosity, spacing, cut, dt)
+        self._law = FilmLaw(viscosity, spacing, cut, dt, shift)
         discs = grains.discs
         thinnest = self.thinnest(radius, discs.mass)  # at a wall, the largest R*
         worst = int(thinnest.argmax()) if discs.count else 0

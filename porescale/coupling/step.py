@@ -101,6 +101,7 @@ class Coupled:
             self.lubrication = Lubrication(
                 grains, self.hydraulic_radius, viscosity=scales.density * scales.viscosity,
                 spacing=scales.spacing, cut=film_gap * scales.spacing, dt=scales.step / contact_steps,
+                shift=self.saturated.radius_shift * scales.spacing**2,
             )  # fmt: skip
 
     def _set_immersed(self, weight: Reals) -> None:

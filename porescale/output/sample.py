@@ -63,7 +63,11 @@ class Sampler:
         return np.asarray(value)
 
     def _plane(self, which: AnyArray, values: AnyArray, solid: AnyArray) -> AnyArray:
-        """Least squares over 4 x 4 cells about each point of the numbers ``which``, each with an open cell of four."""
+        """Least squares over 4 x 4 cells about each point of the numbers ``which``, each with an open cell of four.
+
+        Weights fall as the square of those that would be bilinear: a field that bends by c/h² along a surface puts the
+        plane off by 0.33 c to 0.45 c, in place of 0.5 c to 0.75 c.
+        """
         around = np.arange(-1, 3)
         (x, y), (sx, sy) = self._low[:, which, None] + around, self._share[:, which, None]
         nx, ny = self._cells
@@ -81,7 +85,7 @@ class Sampler:
             grown[:, :, :-1] |= joined[:, :, 1:]
             joined = grown & is_open
         dx, dy = around - sx, around - sy
-        near = (2 - np.abs(dy))[:, :, None] * (2 - np.abs(dx))[:, None, :]
+        near = ((2 - np.abs(dy))[:, :, None] * (2 - np.abs(dx))[:, None, :]) ** 2
         weight = (joined * near * (1 - covered) ** 2).reshape(len(which), -1)
         one = np.ones_like(place, float)
         basis = np.stack([one, one * dx[:, None, :], one * dy[:, :, None]], -1).reshape(len(which), -1, 3)

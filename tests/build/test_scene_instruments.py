@@ -79,6 +79,17 @@ def test_pressure_at_a_surface_is_that_of_the_plane_through_the_fluid_beside_it(
     assert Sampler([(wall, 2.0)], (8, 6), 1.0).in_fluid(values, solid)[0] == pytest.approx(plane(3.5, 2.0), abs=1e-6)
 
 
+@pytest.mark.parametrize(("y", "off"), [(2.0, 0.45), (2.5, 1 / 3)])
+def test_a_bend_along_a_surface_puts_its_pressure_off_by_less_than_half_a_cell_s(y, off):
+    solid, values = half_plane(6, 8, 4.0)
+    values = np.where(solid < 0.5, (np.mgrid[:6, :8][0] + 0.5 - y) ** 2, -1000.0)
+    # Rows at ±1/2 and ±3/2 count 9 and 1, at 0 and ±1 they count 4 and 1: means of squares of 9/20 and 1/3.
+    found = Sampler([(4.0, y)], (8, 6), 1.0).in_fluid(values, solid)[0]
+    assert found == pytest.approx(off, abs=1e-8)
+    # The twin that must fail: bilinear weights, 3 and 1 or 2 and 1.
+    assert found < 0.7 * {2.0: 0.75, 2.5: 0.5}[y]
+
+
 def test_pressure_at_a_surface_is_not_that_behind_a_plate():
     # A plate two cells thick: behind it the pressure is another.
     solid, values = np.zeros((6, 8)), np.ones((6, 8))

@@ -15,6 +15,7 @@ from porescale.validation.coupling import setups as lab
 
 EPS = np.finfo(float).eps
 MU = 0.1
+SHIFT = 0.28
 
 
 def dry(position, radius, velocity=0.0, density=2.0, skin=0.01):
@@ -24,12 +25,12 @@ def dry(position, radius, velocity=0.0, density=2.0, skin=0.01):
 
 def films(grains, cut=1.0, dt=0.25, *, plain=False):
     force = np.zeros((grains.discs.count, 2))
-    lub = law.Lubrication(grains, grains.discs.radius, viscosity=MU, spacing=1.0, cut=cut, dt=dt)
+    lub = law.Lubrication(grains, grains.discs.radius, viscosity=MU, spacing=1.0, cut=cut, dt=dt, shift=SHIFT)
     d, pairs = grains.discs, grains.current_pairs()
     add = law.add_films.py_func if plain else law.add_films
     add(
         d.position, d.velocity, d.radius, d.mass, pairs.start, pairs.partner, grains.box.period, grains.walls,
-        law.FilmLaw(MU, 1.0, cut, dt), force,
+        law.FilmLaw(MU, 1.0, cut, dt, SHIFT), force,
     )  # fmt: skip
     return force, lub
 
@@ -49,12 +50,37 @@ def test_films_between_discs_and_at_walls_follow_the_law(plain):
     )
     force, _ = films(grains, plain=plain)
 
-    def c(radius, gap):
-        return law.FILM * MU * (radius / gap) ** 1.5 * law.lack.py_func(gap)
+    def c(radius, gap, measured):
+        seen = gap + (measured[0] - SHIFT / radius) * (1 - gap / law.CELLS) ** measured[1]
+        return law.FILM * MU * ((radius / gap) ** 1.5 - (radius / seen) ** 1.5)
 
-    between, wall = c(20 / 9, 0.5) * 0.03, c(5.0, 0.3) * 0.03
+    between, wall = c(20 / 9, 0.5, law.BETWEEN_DISCS) * 0.03, c(5.0, 0.3, law.AT_A_WALL) * 0.03
     # lengths of 30 and differences of 0.3: 100 eps, to the power 3/2
     np.testing.assert_allclose(force, [(-between, 0), (between, 0), (wall, 0)], rtol=300 * EPS, atol=1e-15)
+
+
+def added(gap, radius, shift=SHIFT, measured=law.BETWEEN_DISCS):
+    """Share of the thin-film law that is added, of a film of which no step is too long."""
+    whole = law.FILM * MU * (radius / gap) ** 1.5
+    return law.film(gap, radius, 1.0, measured, law.FilmLaw(MU, 1.0, law.CELLS, 0.0, shift)) / whole
+
+
+@pytest.mark.parametrize("measured", [law.BETWEEN_DISCS, law.AT_A_WALL])
+def test_what_is_added_is_a_share_of_the_film_and_ends_with_the_last_cell(measured):
+    for radius in (0.3, 0.76, 1.0, 2.5, 100.0):
+        gaps = np.linspace(1e-6, law.CELLS * (1 - 1e-12), 200)
+        shares = [added(gap, radius, measured=measured) for gap in gaps]
+        assert 0 <= min(shares) <= max(shares) <= 1  # so the film that is stable in whole is in part
+        # next to the cut 3/2 of d/3, d at most D times 1e-12; and round-off of the two powers
+        assert shares[-1] < 1e-12 + 4 * EPS
+    least = SHIFT / measured[0]  # reduced radius where outlines in the lattice are nearer by all of D
+    assert added(0.2, 1.01 * least, measured=measured) > 0 == added(0.2, 0.99 * least, measured=measured)  # no thrust
+
+
+def test_outlines_that_are_wider_in_the_lattice_make_up_for_a_part_of_the_film():
+    # of a gap 0.2 that the lattice has as 0.2 - 0.28/2.5 it bears more than of one that it has as 0.2
+    assert added(0.2, 2.5) < added(0.2, 2.5, shift=0.0) - 0.07
+    assert added(0.2, 2.5, shift=0.0) == pytest.approx(added(0.2, 50.0, shift=0.0), rel=20 * EPS)
 
 
 def test_films_of_an_oblique_pair_are_equal_opposite_and_along_the_line_of_centres():
@@ -97,7 +123,7 @@ def test_the_thinnest_film_is_stable_and_one_eight_times_as_stiff_is_not():
             force = np.zeros((2, 2))
             push = (
                 stiffer
-                * law.film(1e-3, 2.0, d.mass[0], law.FilmLaw(MU, 1.0, 1.0, 0.25))
+                * law.film(1e-3, 2.0, d.mass[0], law.BETWEEN_DISCS, law.FilmLaw(MU, 1.0, 1.0, 0.25, SHIFT))
                 * (d.velocity[0, 0] - d.velocity[1, 0])
             )
             force[:, 0] = -push, push

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from porescale.coupling import lubrication
 from porescale.validation.coupling import films, moving, towed
 from porescale.validation.coupling.towed import faxen, weighing
+from tests.reference.coupling.stokes_array import Array
 from tests.reference.coupling.stokes_box import Box, Enclosed, point_forces
 from tests.validation.tolerances import tolerance
 
@@ -73,8 +75,9 @@ def test_a_disc_a_cell_higher_above_the_wall_is_told_apart():
     assert abs(found / towed.NEAR_WALL["towards"] - 1) > 2 * tolerance("coupling.cylinder_near_a_wall")
 
 
-@pytest.mark.parametrize("gap", films.AT_A_WALL)
-def test_without_the_correction_a_film_is_too_weak(gap):
+@pytest.mark.parametrize("cells", films.AT_A_WALL)
+def test_without_the_correction_a_film_is_too_weak(cells):
+    gap = cells / 10
     found = towed.near_wall("towards", gap) / towed.jeffrey_onishi("towards", gap)
     assert 1 - found > 2.5 * tolerance("coupling.films")
 
@@ -82,6 +85,33 @@ def test_without_the_correction_a_film_is_too_weak(gap):
 def test_without_the_correction_a_film_between_discs_is_too_weak():
     found = films.closing(0.05, films.PLACES[0], lubrication=False) / films.BETWEEN[0.05]
     assert 1 - found > 2.5 * tolerance("coupling.films_between_discs")
+
+
+def test_outlines_as_wide_as_the_discs_would_make_a_film_between_small_discs_too_strong():
+    gap, reduced = 0.06, films.SMALL / 2
+    cells = gap * films.SMALL
+    whole = lubrication.FILM * (reduced / cells) ** 1.5
+    exact = np.mean(films.BETWEEN_SMALL[gap])
+    borne = films.small(gap, places=2, lubrication=False)
+    laws = [lubrication.FilmLaw(1.0, 1.0, 3.0, 0.0, shift) for shift in (1.5 * 3 / 16, 0.0)]
+    films_of = [lubrication.film(cells, reduced, 1.0, lubrication.BETWEEN_DISCS, each) for each in laws]
+    added = np.divide(films_of, whole * exact)
+    assert borne + added[0] == pytest.approx(1, abs=tolerance("coupling.films_between_small_discs"))
+    assert borne + added[1] > 1 + tolerance("coupling.films_between_small_discs")
+
+
+def test_forces_between_small_discs_are_those_of_point_forces():
+    gap, radius = 0.2, films.SMALL
+    for angle, exact in zip(films.ANGLES, films.BETWEEN_SMALL[gap], strict=True):
+        along = np.array([np.cos(angle), np.sin(angle)])
+        arm = (1 + gap / 2) * radius * along
+        pair = Array(
+            3 * radius + np.array([-arm, arm]), np.full(2, radius), 6 * radius, 6 * radius, forces=120, inner=0.67
+        )
+        force, _, slip = pair.loads([0.0, 0.0], [along / 2, -along / 2])
+        found = (force[1] - force[0]) @ along / 2 / (lubrication.FILM * (0.5 / gap) ** 1.5)
+        assert found == pytest.approx(exact, abs=6e-5 + slip)  # four digits
+    assert np.ptp(films.BETWEEN_SMALL[gap]) > 0.05  # one angle is not another
 
 
 @pytest.mark.slow
