@@ -1,8 +1,10 @@
 """The code of the manual's pages, run from the top of a page to its end: ``python -m tests.manual.snippets PAGE``.
 
 ```python blocks run one after another in one Python: names carry on down the page.  Of ```console blocks, each line
-that starts with ``$ `` runs in a shell that has ``porescale``, ``continuum-sph`` and ``python``; it goes on where it
-ends with a backslash.  All run in one folder, empty at the start.  A comment before a block says what is special:
+that starts with ``$ `` is a command; it goes on where it ends with a backslash.  All run in one folder, empty at the
+start.  Of ``porescale`` and ``continuum-sph`` the page's Python runs the program with these arguments: a process for
+each would spend most of its time on imports and on reading kernels.  Other commands, and those of `PROCESSES`, run in a
+shell that has both and ``python``.  A comment before a block says what is special:
 
     <!-- not run: reason -->        the block does not run
     <!-- file: NAME -->             the block, of any kind, is written to this file of the folder instead
@@ -11,12 +13,16 @@ ends with a backslash.  All run in one folder, empty at the start.  A comment be
 
 import os
 import re
+import runpy
+import shlex
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
+from porescale.common.compiled import ahead
 from tests.reference.folders import DOCS, ROOT
 
 FOLDERS = ("first_hour", "howto", "develop")
@@ -27,7 +33,13 @@ BLOCK = re.compile(
 )
 COMMAND = re.compile(r"^\$ ((?:[^\n]*\\\n)*[^\n]*)", re.M)
 LIMIT = 300
-"""Seconds that one command may take, compiling included."""
+"""Seconds that one command in a shell may take, compiling included."""
+MODULES = {"porescale": "porescale", "continuum-sph": "continuum_sph"}
+"""Programs, and what Python runs for them."""
+PROCESSES = {"first_run", "install"}
+"""Pages whose commands all run in a shell, as those of who begins do."""
+SHELL = set("|&;<>()$`*?[]#~{}\n")
+"""Signs that a shell gives a meaning to."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +82,8 @@ def snippets(text: str) -> list[Snippet]:
 def surroundings(folder: Path) -> dict[str, str]:
     """The environment of commands: ``porescale``, ``continuum-sph`` and ``python`` are those of this checkout."""
     folder.mkdir()
-    for name, call in {"porescale": "-m porescale", "continuum-sph": "-m continuum_sph", "python": ""}.items():
+    for name in (*MODULES, "python"):
+        call = f"-m {MODULES[name]}" if name in MODULES else ""
         path = folder / name
         path.write_text(f'#!/bin/sh\nexec "{sys.executable}" {call} "$@"\n', encoding="utf-8")
         path.chmod(0o755)
@@ -84,11 +97,34 @@ def run_page(page: Path, folder: Path) -> subprocess.CompletedProcess[str]:
     """Run all of a page in a process of its own, in an empty ``folder``."""
     environment = surroundings(folder.parent / f"{folder.name}_bin")
     command = [sys.executable, "-m", "tests.manual.snippets", str(page)]
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=2 * LIMIT)
+    limits: Any = {"stdin": subprocess.DEVNULL, "timeout": 2 * LIMIT}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, **limits)
+
+
+def run_here(words: list[str]) -> int:
+    """Exit code of ``porescale`` or ``continuum-sph`` with these arguments, run here as ``python -m`` runs it."""
+    before, sys.argv = sys.argv, words
+    try:
+        runpy.run_module(MODULES[words[0]], run_name="__main__", alter_sys=False)
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else int(end.code is not None)
+    finally:
+        sys.argv = before
+    return 0
+
+
+def run_command(command: str, alone: bool) -> int:
+    """Exit code of a command; what it prints is printed.  alone : in a process of its own, whatever it is."""
+    print(f"$ {command}", flush=True)
+    words = shlex.split(command.replace("\\\n", ""))
+    if not alone and words[0] in MODULES and not SHELL & set(command.replace("\\\n", "")):
+        return run_here(words)
+    return subprocess.run(["bash", "-c", command], timeout=LIMIT).returncode
 
 
 def main(page: Path) -> None:
     """Run a page here; an exception, or a SystemExit that names the line, where a block fails."""
+    ahead.cores = lambda: 1  # no second process that compiles: the other core has the other worker
     names: dict[str, object] = {"__name__": "__main__"}
     for snippet in snippets(page.read_text(encoding="utf-8")):
         if not snippet.runs:
@@ -104,12 +140,9 @@ def main(page: Path) -> None:
                 raise SystemExit(f"{page.name}, line {snippet.line}: no command; lines with one start with '$ '")
             for command in commands:
                 due = snippet.code_at_end if command == commands[-1] else 0
-                done = subprocess.run(
-                    ["bash", "-c", command], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=LIMIT
-                )
-                print(f"$ {command}\n{done.stdout}{done.stderr}", flush=True)
-                if done.returncode != due:
-                    raise SystemExit(f"{page.name}, line {snippet.line}: exit code {done.returncode}, not {due}")
+                code = run_command(command, alone=page.stem in PROCESSES)
+                if code != due:
+                    raise SystemExit(f"{page.name}, line {snippet.line}: exit code {code}, not {due}")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 """Ensembles of a watched sweep: means and bands of what has finished, live and on a page that needs no server."""
 
 import json
+import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -37,19 +39,27 @@ def written(folder, points, ends) -> None:
     sweep_files.write(folder, "toy sweep", ends, ROWS, PROGRAM.table, points)
 
 
-@pytest.fixture
-def swept(tmp_path, monkeypatch):
-    """Two combinations of four toys, of which the first three of one and all of the other have finished."""
-    from dataclasses import replace
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """What `swept` is a copy of."""
+    from porescale.common.api.program import run_table
 
+    folder = tmp_path_factory.mktemp("swept")
+    one, other = varied(["toy.rate=1,2"])
+    points = [*members(one), *members(other)]
+    ends = [run(folder, point) for point in points if point.name != "rate=1,seed=3"]
+    sweep_files.write(folder, "toy sweep", ends, ROWS, run_table, points)
+    return folder
+
+
+@pytest.fixture
+def swept(runs, tmp_path, monkeypatch):
+    """Two combinations of four toys, of which the first three of one and all of the other have finished."""
     from porescale.common.api.program import run_table
     from tests.reference import watched as served_from
 
     monkeypatch.setattr(served_from, "PROGRAM", replace(PROGRAM, table=run_table))
-    one, other = varied(["toy.rate=1,2"])
-    points = [*members(one), *members(other)]
-    ends = [run(tmp_path, point) for point in points if point.name != "rate=1,seed=3"]
-    sweep_files.write(tmp_path, "toy sweep", ends, ROWS, run_table, points)
+    shutil.copytree(runs, tmp_path, dirs_exist_ok=True)
     return tmp_path
 
 
