@@ -42,6 +42,9 @@ FILM = 3 * math.sqrt(2) * math.pi
 BETWEEN_DISCS, AT_A_WALL = (0.37, 1), (0.48, 3)
 """D, cells by which the thinnest films are wider to the lattice than between the outlines that it has, and p."""
 
+APART = 0.08
+"""Cells by which outlines of two discs in the lattice lie apart where what it bears is much the same at all places."""
+
 
 class FilmLaw(NamedTuple):
     """viscosity : dynamic, Pa s;  spacing : h, m;  cut : g_c, m, at most 3 h: beyond nothing is added;  dt : contact

@@ -99,7 +99,7 @@ def test_what_discs_alone_have_is_refused_of_polygons_with_the_reason():
     derive(wet(SQUARE, fluid__operator="central", fluid__rim="sharp"))
     assert " is of the discs alone: the fluid sees polygons at their outline" in warned(SQUARE, **beside)
     # The twin: none of it is refused or said where there is no polygon.
-    alone = derive(column(**WATER | beside | {"fluid__rim": "soft", "lubrication": {}}))
+    alone = derive(column(**WATER | beside | {"fluid__rim": "soft", "fluid__magic": 0.0417, "lubrication": {}}))
     assert not [line for line in alone.warnings if "alone" in line or "film" in line or "rim" in line]
 
 
@@ -113,6 +113,21 @@ def test_a_film_or_a_rim_that_a_body_has_not_is_said():
     # The twins: without what asks for it nothing is said.
     assert "film" not in " ".join(derive(column(**WATER | {**grains, "lubrication": None} | block)).warnings)
     assert "rim" not in " ".join(derive(water(**block)).warnings)
+
+
+def test_films_that_are_uncertain_are_said():
+    def said(**more):
+        grains = {"grains__grain": [grain(0.008, 0.005)], "lubrication": {}}
+        return " ".join(derive(column(**WATER | grains | more)).warnings)
+
+    assert "with 'narrow-wall' the forces of films may be a third off" in said(fluid__solid_operator="narrow-wall")
+    nearer = said()
+    assert "cells nearer to each other in the lattice" in nearer
+    assert "fluid.magic = 0.0417 makes that" in nearer
+    # The twins: without films, with the operator that they were measured with, with outlines that are not wider.
+    assert "films" not in said(lubrication=None, fluid__solid_operator="narrow-wall")
+    assert "a third off" not in nearer
+    assert "nearer" not in said(fluid__magic=0.0417)
 
 
 def test_a_plate_of_one_cell_is_warned_of():

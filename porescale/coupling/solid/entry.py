@@ -34,9 +34,9 @@ class SolidOperator:
     answers it with a change of sign each step (immersed.py);  force_everywhere : whether the body force acts in the
     whole of a cell;  held_only : whether free discs run away with it;  longest_relaxation_time : up to which drag is
     right;  magic : the one magic parameter that it is made for, None for any;  narrow_gaps : whether a gap of 1.4 cells
-    carries what it should;  gaps : gap in cells between discs of a square array, and by how much of it the drag is too
-    small there, the worst of relaxation times up to 1; ascending;  holds : by weight;  order : place in lists, the
-    recommended one first.
+    carries what it should;  films : whether films (lubrication.py) were measured with it;  gaps : gap in cells between
+    discs of a square array, and by how much of it the drag is too small there, the worst of relaxation times up to 1;
+    ascending;  holds : by weight;  order : place in lists, the recommended one first.
     """
 
     name: str
@@ -53,6 +53,7 @@ class SolidOperator:
     longest_relaxation_time: float = 1.5
     magic: float | None = None
     narrow_gaps: bool = False
+    films: bool = False
     gaps: tuple[tuple[float, float], ...] = ()
     holds: Mapping[str, Holds] = field(default_factory=dict)
     order: int = 100

@@ -167,6 +167,7 @@ SOLID_OPERATOR = SolidOperator(
     radius_shift=RADIUS_SHIFT,
     half_step_correction=True,
     force_everywhere=True,
+    films=True,
     gaps=((1.4, 0.28), (2.6, 0.05), (4.0, 0.01)),  # solid fraction 0.6, 0.5, 0.4 at 10 cells per diameter
     longest_relaxation_time=2.0,  # at 10 cells per diameter drag is within 1.5 % even at 3
     holds={"wall": Holds(lightest=((5.0, 0.1), (3.0, 0.2)), cells=3.0, bed=((0.4, 5.0), (0.6, 15.0)))},
