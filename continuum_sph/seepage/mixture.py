@@ -7,7 +7,8 @@ Notation and derivation: `continuum_sph.seepage`.  What water finds about it of 
 import numpy as np
 
 from continuum_sph.seepage.overlap import overlap_kernel
-from continuum_sph.water.smoothing import CUBIC, kernel_value
+from continuum_sph.water.kernel_correction import lattice_gradient
+from continuum_sph.water.smoothing import CUBIC, kernel_kind, kernel_value
 from continuum_sph.water.state import BY_SHIFTING, RHO, VOLUME, VX, VY, X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_four, gather_rows, mask_tail, reduce_add, store, zeros
@@ -21,6 +22,7 @@ V^grains/k, s/m;  Σ m W, kg/m³;  its own density kg/m³, mass kg/m and what st
 (m/s) and acceleration (m/s²) less the soil's mean by r W."""
 LINES = 14
 LEAST_ROOM = 0.2  # of a kernel: a particle in a right-angled corner has a quarter
+GROUND = 0.25  # share of grains from which on water counts as among them: loose sand has 0.45, its surface half of that
 LEAST_POROSITY = 0.05  # grains packed more densely leave the water the volume of this porosity
 
 
@@ -104,6 +106,22 @@ def mix_fluxes(fluid, start, split, partner, record, home, pores, h, period_x, p
             record[i, VOLUME] /= porosity
         pores[ROOM, i] = room
         pores[POROSITY, i] = porosity
+
+
+@parallel_kernel
+def open_gradients(fluid, pores, matrix, kind, h, spacing):
+    """Overwrites L of water particles in ``matrix`` (fluid, 4) with that of water in the open as far as grains are few.
+
+    There it is that of the lattice at the start, for all (`water.kernel_correction`);  where grains take up GROUND or
+    more L stays;  between them linear in their share.  kind, h (m): of the kernel;  spacing at the start, m.
+    """
+    plain = lattice_gradient(kernel_kind(kind), h, spacing)
+    for i in prange(fluid):
+        share = min(1.0, (1.0 - pores[POROSITY, i]) / GROUND)
+        rest = (1.0 - share) * plain
+        matrix[i, 0] = share * matrix[i, 0] + rest
+        matrix[i, 1] *= share
+        matrix[i, 2] = share * matrix[i, 2] + rest
 
 
 @parallel_kernel

@@ -17,6 +17,7 @@ from continuum_sph.seepage.mixture import (
     keep_place_density,
     load_soil,
     mix_fluxes,
+    open_gradients,
     share_forces,
 )
 from continuum_sph.seepage.overlap import Overlap, Reach
@@ -77,7 +78,12 @@ class PoreFlow(Flow):
         )  # fmt: skip
 
     def sum_pairs(self, half: float) -> None:
-        """Sum over pairs as `Flow.sum_pairs` does, for the mixture."""
+        """Sum over pairs as `Flow.sum_pairs` does, for the mixture: gradients are corrected among grains alone."""
+        if self.law.corrected:
+            law = self.law
+            open_gradients(
+                self.layer.fluid, self.pores, self.layer.matrix, self.kind, law.smoothing.length, law.spacing
+            )  # fmt: skip
         super().sum_pairs(half)
         if self.law.shifting > 0.0:
             keep_place_density(self.layer.fluid, self.pores, self.density_gradient, self.layer.drift, self.layer.rate)
