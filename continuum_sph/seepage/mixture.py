@@ -9,7 +9,7 @@ import numpy as np
 from continuum_sph.seepage.overlap import overlap_kernel
 from continuum_sph.water.kernel_correction import lattice_gradient
 from continuum_sph.water.smoothing import CUBIC, kernel_kind, kernel_value
-from continuum_sph.water.state import BY_SHIFTING, RHO, VOLUME, VX, VY, X, Y
+from continuum_sph.water.state import BY_SHIFTING, COMPRESSIBILITY, RHO, VOLUME, VX, VY, X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_four, gather_rows, mask_tail, reduce_add, store, zeros
 from porescale.common.neighbors.cells import minimum_image
@@ -109,12 +109,16 @@ def mix_fluxes(fluid, start, split, partner, record, home, pores, h, period_x, p
 
 
 @parallel_kernel
-def open_gradients(fluid, pores, matrix, kind, h, spacing):
-    """Overwrites L of water particles in ``matrix`` (fluid, 4) with that of water in the open as far as grains are few.
+def open_gradients(fluid, pores, record, matrix, density, kernel, spacing, gx, gy):
+    """Overwrites L of water particles in ``matrix`` (fluid, 4) and the gradient of ``density`` (fluid, 2) kg/m⁴, from
+    which its diffusion takes departures, with those of water in the open as far as grains are few.
 
-    There it is that of the lattice at the start, for all (`water.kernel_correction`);  where grains take up GROUND or
-    more L stays;  between them linear in their share.  kind, h (m): of the kernel;  spacing at the start, m.
+    In the open L is that of the lattice at the start, for all (`water.kernel_correction`), and the gradient that of
+    water at rest (`water.density`);  where grains take up GROUND or more both stay;  between them linear in their
+    share.  density: None where nothing diffuses;  record: see `water.state`;  kernel: kind and h (m);  spacing at the
+    start, m;  (gx, gy) m/s².
     """
+    kind, h = kernel
     plain = lattice_gradient(kernel_kind(kind), h, spacing)
     for i in prange(fluid):
         share = min(1.0, (1.0 - pores[POROSITY, i]) / GROUND)
@@ -122,6 +126,10 @@ def open_gradients(fluid, pores, matrix, kind, h, spacing):
         matrix[i, 0] = share * matrix[i, 0] + rest
         matrix[i, 1] *= share
         matrix[i, 2] = share * matrix[i, 2] + rest
+        if density is not None:
+            weight = (1.0 - share) * record[i, COMPRESSIBILITY]
+            density[i, 0] = share * density[i, 0] + weight * gx
+            density[i, 1] = share * density[i, 1] + weight * gy
 
 
 @parallel_kernel

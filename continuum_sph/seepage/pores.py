@@ -80,9 +80,10 @@ class PoreFlow(Flow):
     def sum_pairs(self, half: float) -> None:
         """Sum over pairs as `Flow.sum_pairs` does, for the mixture: gradients are corrected among grains alone."""
         if self.law.corrected:
-            law = self.law
+            law, layer = self.law, self.layer
             open_gradients(
-                self.layer.fluid, self.pores, self.layer.matrix, self.kind, law.smoothing.length, law.spacing
+                layer.fluid, self.pores, layer.record, layer.matrix, self.gradients.density,
+                (self.kind, law.smoothing.length), law.spacing, *law.gravity,
             )  # fmt: skip
         super().sum_pairs(half)
         if self.law.shifting > 0.0:
