@@ -33,6 +33,7 @@ extensions = [
     "docs._ext.rows",
     "docs._ext.folders",
     "docs._ext.made",
+    "docs._ext.navigation",
 ]
 
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist", "attrs_inline"]

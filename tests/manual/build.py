@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -61,34 +62,46 @@ class Page(HTMLParser):
             self.styles.append(given["style"])
 
 
-def from_elsewhere(site: Path) -> Iterator[str]:
-    """Pages and styles that load something from the network, with what."""
-    for path in sorted(site.rglob("*.html")):
-        page = Page(path.read_text(encoding="utf-8"))
+def read(site: Path) -> dict[Path, Page]:
+    """The pages of a site that was built, by their places."""
+    return {path.resolve(): Page(path.read_text(encoding="utf-8")) for path in sorted(site.rglob("*.html"))}
+
+
+def from_elsewhere(site: Path, pages: dict[Path, Page] | None = None) -> Iterator[str]:
+    """Pages and styles that load something from the network, with what.  pages : those of the site, if read."""
+    for path, page in (pages or read(site)).items():
         for load in [it for it in page.loads if urlsplit(it).netloc] + page.styles:
-            yield f"{path.relative_to(site)}: {load}"
+            yield f"{path.relative_to(site.resolve())}: {load}"
     for path in sorted(site.rglob("*.css")):
         if STYLE_URL.search(path.read_text(encoding="utf-8")):
             yield f"{path.relative_to(site)}: {STYLE_URL.pattern}"
 
 
-def dead_links(site: Path) -> Iterator[str]:
-    """Links of pages to files of the site, or anchors of them, that are not there."""
-    pages = {path.resolve(): Page(path.read_text(encoding="utf-8")) for path in sorted(site.rglob("*.html"))}
+def dead_links(site: Path, pages: dict[Path, Page] | None = None) -> Iterator[str]:
+    """Links of pages to files of the site, or anchors of them, that are not there.  pages : the site's, if read."""
+    pages, top = pages or read(site), site.resolve()
+
+    @cache
+    def found(folder: Path, name: str) -> Path | None:
+        """The file of the site that a link in a folder leads to."""
+        there = (folder / unquote(name)).resolve()
+        return there if there.is_file() and there.is_relative_to(top) else None
+
     for path, page in pages.items():
         for link in {*page.links, *page.loads}:
             parts = urlsplit(link)
             if parts.scheme or parts.netloc or link == "#":
                 continue
-            there = (path.parent / unquote(parts.path)).resolve() if parts.path else path
-            sound = there.is_file() and there.is_relative_to(site.resolve())
-            if sound and parts.fragment and there in pages:
+            there = found(path.parent, parts.path) if parts.path else path
+            sound = there is not None
+            if there in pages and parts.fragment:
                 sound = unquote(parts.fragment) in pages[there].anchors
             if not sound:
-                yield f"{path.relative_to(site.resolve())}: {link}"
+                yield f"{path.relative_to(top)}: {link}"
 
 
 def faults(site: Path) -> list[str]:
     """All that is wrong with a site that was built."""
-    return [*(f"loads from the network: {it}" for it in from_elsewhere(site)),
-            *(f"dead link: {it}" for it in dead_links(site))]  # fmt: skip
+    pages = read(site)
+    return [*(f"loads from the network: {it}" for it in from_elsewhere(site, pages)),
+            *(f"dead link: {it}" for it in dead_links(site, pages))]  # fmt: skip
