@@ -43,11 +43,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     from porescale.common.compiled import ahead
+    from porescale.common.compiled.cuda import simulated
     from porescale.common.compiled.jit import when_compiling  # and with it numpy, once the variables above are set
 
     # A second process that compiles a run's kernels takes 8 s for a scene of which none is kept, and has no core of its
     # own beside two workers: for the tests there is one core, but in those of that process.
     ahead.cores = lambda: 1
+
+    if simulated():
+        from tests import simulator
+
+        simulator.use()
 
     # In systems of a few cells waiting for a second thread is all that is done, and the other worker needs the core.
     when_compiling(lambda machine: machine.numba.set_num_threads(1))

@@ -271,9 +271,13 @@ class Backwards:
 
 
 def test_no_order_of_threads_and_of_kernels_matters(monkeypatch):
-    """Blocks from the last to the first, in the simulator, and cells without bodies before those near them."""
+    """Blocks from the last to the first, their threads all at once, in the simulator, and cells without bodies before
+    those near them."""
     expected, backwards = gone(*started(device=False)), Backwards()
     if simulated():
+        from tests import simulator
+
+        monkeypatch.setattr("numba.cuda.simulator.kernel.BlockManager.run", simulator.THREADS)
         monkeypatch.setattr("numba.cuda.simulator.kernel.np", backwards)
     sweep = device_bodies.DeviceBodies._sweep_part
     waiting = []

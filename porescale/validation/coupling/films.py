@@ -8,9 +8,11 @@ import math
 import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
+from porescale.coupling.step import Coupled
 from porescale.lbm.lattice import viscosity
-from porescale.validation.coupling.setups import DEFAULT, PERIODIC, TAU, Method
+from porescale.validation.coupling.setups import DEFAULT, PERIODIC, TAU, Method, immersed
 from porescale.validation.coupling.towed import SLOW, jeffrey_onishi, near_wall, steady, towed
+from porescale.validation.lbm.channels import one_thread
 
 VALIDATIONS = Validations()
 
@@ -130,3 +132,44 @@ def films_between_narrow() -> Measured:
     """The same at gaps of 0.1, 0.2 and 0.5 cells with a magic parameter of 1/24."""
     found = [small(gap, method=NARROW) for gap in (0.02, 0.04, 0.1)]
     return Measured.absolute([1.0] * len(found), found)
+
+
+SINKS = 1.0, 0.25
+"""Gaps in cells between which a disc that sinks is timed; below 0.13 films count as that thick."""
+
+
+def sinking(*, lubrication: bool = True) -> float:
+    """Time in which a disc of radius ``SMALL`` sinks onto a floor from one gap of ``SINKS`` to the other, over the
+    law's, without inertia: weight over speed is 4 pi mu/(alpha - tanh alpha) at every gap."""
+    radius, density, fall = SMALL, 3.0, (0.0, -4e-5)
+    plain = immersed(
+        (round(12 * radius), round(6 * radius)), [(6 * radius + 0.3, radius + 1.3)], radius, density,
+        acceleration=fall, relaxation_time=TAU,
+    )  # fmt: skip
+    coupled = Coupled(
+        plain.fluid, plain.grains, plain.scales, hydraulic_ratio=1.0, contact_steps=4, acceleration=fall,
+        lubrication=lubrication,
+    )  # fmt: skip
+    gaps = np.linspace(*SINKS, 101)
+    weight = (density - 1) * math.pi * radius**2 * -fall[1]
+    exact = np.trapezoid([jeffrey_onishi("towards", gap / radius) for gap in gaps], -gaps) * viscosity(TAU) / weight
+    steps = []
+    with one_thread():
+        for gap in SINKS:
+            steps.append(0)
+            while coupled.grains.discs.position[0, 1] > radius + gap:
+                coupled.advance()
+                steps[-1] += 1
+    return float(steps[-1] / exact)
+
+
+@VALIDATIONS.row(
+    "coupling.sinking_through_a_film",
+    source="Jeffrey & Onishi 1981: weight over speed at every gap, summed up",
+    because="required of a film: 5 %; the speed follows the gap within 16 steps of five thousand",
+    tolerance=REQUIRED,
+    slow=True,
+)
+def sinking_row() -> Measured:
+    """Time over the law's from a gap of a cell to one of a quarter, a free disc of radius 5 above a floor, tau 0.8."""
+    return Measured.absolute(1.0, sinking())

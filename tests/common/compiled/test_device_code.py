@@ -8,6 +8,7 @@ from types import FunctionType, SimpleNamespace
 
 import numpy as np
 import pytest
+from numba import cuda as device
 
 from porescale.common.compiled import cuda, simd
 from porescale.common.compiled.jit import Kernel
@@ -84,3 +85,20 @@ def test_products_are_not_fused_at_the_link(monkeypatch):
     monkeypatch.setattr(cuda, "simulated", lambda: True)  # whose ``jit`` has no such option
     cuda.jit(math.sqrt)
     assert given[1] == ((math.sqrt,), {})
+
+
+def test_a_barrier_is_refused_by_a_simulator_that_takes_threads_in_turn():
+    if cuda.simulated():
+        found = np.zeros(4)
+        numbered = cuda.jit(_numbered)
+        numbered[2, 2](found, False)
+        assert found.tolist() == [1, 2, 3, 4]
+        with pytest.raises(NotImplementedError, match="barrier"):
+            numbered[2, 2](found, True)
+
+
+def _numbered(found, wait):
+    i = device.grid(1)
+    found[i] = i + 1
+    if wait:
+        device.syncthreads()

@@ -87,6 +87,11 @@ def test_without_the_correction_a_film_between_discs_is_too_weak():
     assert 1 - found > 2.5 * tolerance("coupling.films_between_discs")
 
 
+@pytest.mark.slow
+def test_without_the_correction_a_disc_sinks_too_fast():
+    assert 1 - films.sinking(lubrication=False) > 2.5 * tolerance("coupling.sinking_through_a_film")
+
+
 def test_outlines_as_wide_as_the_discs_would_make_a_film_between_small_discs_too_strong():
     gap, reduced = 0.06, films.SMALL / 2
     cells = gap * films.SMALL
