@@ -5,6 +5,7 @@ from . import dam as dam
 from . import heave as heave
 from . import infiltration as infiltration
 from . import levee as levee
+from . import open_water as open_water
 from . import permeability as permeability
 from . import permeameter as permeameter
 from . import saturated_box as saturated_box
@@ -20,6 +21,7 @@ __all__ = [
     "heave",
     "infiltration",
     "levee",
+    "open_water",
     "permeability",
     "permeameter",
     "saturated_box",

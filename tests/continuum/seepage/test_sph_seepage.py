@@ -8,6 +8,7 @@ from continuum_sph.seepage import overlap as overlaps
 from continuum_sph.seepage.exchange import apply_drag, apply_reaction, relative_to_soil, relaxation
 from continuum_sph.seepage.mixture import (
     DENSITY,
+    GROUND,
     LINES,
     MASSES,
     POROSITY,
@@ -19,6 +20,7 @@ from continuum_sph.seepage.mixture import (
     gather_soil,
     load_soil,
     mix_fluxes,
+    open_gradients,
     share_forces,
 )
 from continuum_sph.seepage.overlap import Overlap, Reach, overlap_kernel, overlap_weights
@@ -26,8 +28,9 @@ from continuum_sph.seepage.pressure_face import drain_walls
 from continuum_sph.seepage.resistance import drag
 from continuum_sph.seepage.skeleton import show_soil, weigh
 from continuum_sph.water.bundles import Neighbours
-from continuum_sph.water.smoothing import WENDLAND, kernel_value
-from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
+from continuum_sph.water.kernel_correction import lattice_gradient
+from continuum_sph.water.smoothing import CUBIC, WENDLAND, kernel_slope, kernel_value
+from continuum_sph.water.state import COMPRESSIBILITY, RHO, VOLUME, VX, VY, P, X, Y
 from porescale.common.compiled.simd import LANES
 from tests.reference.continuum import seepage as slow
 
@@ -228,3 +231,34 @@ def test_soil_that_is_held_has_no_speed_and_water_feels_it():
     assert frame.skeleton.held
     assert frame.next_step == np.inf
     np.testing.assert_allclose(frame.skeleton.resisting, 0.6 * 0.01 / 1e-4)
+
+
+@pytest.mark.parametrize(
+    ("kind", "ratio", "known"), [(WENDLAND, 1.3, 1.0268), (WENDLAND, 2.0, 1.0008), (CUBIC, 1.0, 0.9871)]
+)
+def test_plain_sums_on_a_lattice_are_exact_once_multiplied(kind, ratio, known):
+    # The sum over a lattice wider than the kernel, place by place: a linear field has the slope 1.
+    at = 0.1 * np.arange(-5, 6)
+    total = 0.0
+    for x in at:
+        for y in at:
+            total -= 0.01 * x * x * kernel_slope(kind, float(np.hypot(x, y)) / (0.1 * ratio), 0.1 * ratio)
+    factor = lattice_gradient(kind, 0.1 * ratio, 0.1)
+    assert factor * total == pytest.approx(1.0, rel=100 * eps)
+    assert factor == pytest.approx(known, abs=1e-4)  # and is what the pages say, to their digits
+
+
+def test_gradients_are_corrected_among_grains_and_plain_in_the_open():
+    # Four particles: in the open, on the edge of the ground, at half of what counts as ground, within it.
+    grains = np.array([0.0, GROUND, 0.5 * GROUND, 0.6])
+    pores, record = np.zeros((LINES, 4)), np.zeros((4, 8))
+    pores[POROSITY], record[:, COMPRESSIBILITY] = 1.0 - grains, 2e-3
+    matrix, density = np.tile([1.3, 0.2, 0.9, 2.0], (4, 1)), np.tile([7.0, -3.0], (4, 1))
+    open_gradients(4, pores, record, matrix, density, (WENDLAND, 0.13), 0.1, 0.0, -GRAVITY)
+    plain = lattice_gradient(WENDLAND, 0.13, 0.1)
+    middle = [0.5 * (1.3 + plain), 0.1, 0.5 * (0.9 + plain), 2.0]
+    expected = [[plain, 0.0, plain, 2.0], [1.3, 0.2, 0.9, 2.0], middle, [1.3, 0.2, 0.9, 2.0]]
+    np.testing.assert_allclose(matrix, expected, rtol=4 * eps)
+    rest = -2e-3 * GRAVITY
+    expected = [[0.0, rest], [7.0, -3.0], [3.5, 0.5 * (rest - 3.0)], [7.0, -3.0]]
+    np.testing.assert_allclose(density, expected, rtol=4 * eps)

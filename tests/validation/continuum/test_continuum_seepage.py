@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.seepage import Resistance, exchange, pores
-from continuum_sph.validation.seepage import consolidation, infiltration, permeameter, saturated_box
+from continuum_sph.validation.seepage import consolidation, infiltration, open_water, permeameter, saturated_box
 from continuum_sph.validation.seepage.consolidation import LAYER, realised_modulus
 from tests.validation.tolerances import tolerance
 
@@ -102,3 +102,14 @@ def test_the_front_is_that_of_a_constant_head_at_first():
     early = given.time(1e-4)
     assert (2.0 * given.permeability * given.standing * early / given.porosity) ** 0.5 == pytest.approx(1e-4, rel=1e-3)
     assert given.time(given.front(0.5)) == pytest.approx(0.5, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_water_that_has_the_gradients_of_ground_shrinks_and_lies_askew(monkeypatch):
+    depth, askew = open_water.stirred(0.025)
+    assert abs(depth) < tolerance("continuum.stirred_water_over_ground")
+    assert abs(askew) < 0.5 * 0.025  # of still water a level is known to half a spacing
+    monkeypatch.setattr(pores, "open_gradients", lambda *_: None)
+    depth, askew = open_water.stirred(0.025)
+    assert depth < -tolerance("continuum.stirred_water_over_ground")
+    assert abs(askew) > 0.5 * 0.025
