@@ -122,12 +122,20 @@ class Toy:
         return dict(json.loads(done.stdout))
 
 
-@pytest.fixture
-def toy(tmp_path: Path) -> Toy:
-    """The package, its kernels compiled and on disk."""
-    made = Toy(tmp_path / "one", tmp_path / "kernels")
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory) -> Path:
+    """The package's kernels, compiled by a process of which nothing else is left."""
+    place = tmp_path_factory.mktemp("kept")
+    made = Toy(place / "one", place / "kernels")
     assert made.run() == {"Soft": [6.0, 0], "Hard": [24.0, 0]}
-    return made
+    return made.kernels
+
+
+@pytest.fixture
+def toy(kept: Path, tmp_path: Path) -> Toy:
+    """The package, its kernels compiled and on disk."""
+    shutil.copytree(kept, tmp_path / "kernels")
+    return Toy(tmp_path / "one", tmp_path / "kernels")
 
 
 def test_what_is_compiled_once_is_read_by_the_next_process_also_from_a_copy_elsewhere(toy, tmp_path):
