@@ -10,6 +10,10 @@ more than half a particle is missing one is put on the lowest place of the surfa
 the level already; while more than half a particle is over the highest of the strip is taken out.  A level at the bottom
 takes out whatever comes.
 
+A particle is put a spacing above what is below it, and nearer by the cube of level over surface where what stands in
+the strip is sparse.  Water would else come in sparser than it is, by 5 %, stand so much higher, and press so much more on
+what lies beside it: the discharge of a dam, right at first, is 2.6 % too large after 35 s, and goes on rising.
+
 Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
 far from each other and from all else that they have no neighbours.  A row without mass is a waiting particle.
 """
@@ -29,6 +33,8 @@ BERTH = 1.5  # cutoffs between berths
 HEAP = 0.1
 """Of the depth: how much higher than its level a surface may stand to make up for what its particles leave empty; a
 column of water that falls is not topped up beyond."""
+CLOSER = 3
+"""Power of level over surface by which particles are put nearer: 1 leaves half of what is sparse."""
 
 
 @kernel
@@ -183,12 +189,15 @@ class Supply:
         most = target + HEAP * (target - pool.bottom)
         if float(pool.tops.min()) + 0.5 * self.spacing > most:
             return False
+        surface = float(pool.tops.mean()) + 0.5 * self.spacing - pool.bottom
+        dense = min(1.0, (pool.level - pool.bottom) / surface) if surface > 0.0 else 1.0
+        apart = dense**CLOSER * self.spacing
         free = np.flatnonzero(layer.mass[: layer.fluid] == 0.0)
         for i in free[: min(count, columns)]:
             c = int(np.argmin(pool.tops))
             if pool.tops[c] + 0.5 * self.spacing > most:
                 break
-            height = pool.tops[c] = pool.tops[c] + self.spacing
+            height = pool.tops[c] = pool.tops[c] + apart
             layer.x[i] = pool.left + (c + 0.5) * (pool.right - pool.left) / columns, height
             layer.v[i] = layer.smoothed[i] = layer.drift[i] = 0.0
             depth = max(0.0, target - height)
