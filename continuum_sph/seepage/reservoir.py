@@ -11,7 +11,7 @@ the level already; while more than half a particle is over the highest of the st
 takes out whatever comes.
 
 A particle is put a spacing above what is below it, and nearer by the cube of level over surface where what stands in
-the strip is sparse.  Water would else come in sparser than it is, by 5 %, stand so much higher, and press so much more on
+the strip is sparse.  Water would else come in sparser than it is, by 5 %, stand so much higher, and press the more on
 what lies beside it: the discharge of a dam, right at first, is 2.6 % too large after 35 s, and goes on rising.
 
 Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
