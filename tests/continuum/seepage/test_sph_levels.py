@@ -9,7 +9,7 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply
-from continuum_sph.seepage.reservoir import berths, measure_strip, park_waiting
+from continuum_sph.seepage.reservoir import CLOSER, berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
@@ -115,6 +115,20 @@ def test_new_water_lies_on_the_lowest_place_under_its_depth():
     assert apart.min() > 0.99 * SPACING
     depth = np.maximum(0.0, 0.8 - layer.x[new, 1])
     np.testing.assert_allclose(layer.density[new], 1000.0 * (1.0 + 1000.0 * 9.81 * depth / 1e6), rtol=1e-12)
+
+
+@pytest.mark.parametrize("stretch", [1.0, 1.05])
+def test_new_water_is_put_nearer_where_what_stands_there_is_sparse(stretch):
+    given = supply(pool(0.5, right=2.0, walls=(True, True)))
+    layer, before = given.layer, given.layer.mass > 0.0
+    layer.x[before, 1] *= stretch
+    given.keep(0.0)
+    new = (layer.mass > 0.0) & ~before
+    assert new.sum() == 20
+    top, surface = 0.35 * stretch, 0.35 * stretch + 0.5 * SPACING
+    # 0.4 m of water stand 0.4 or 0.4175 m high: 0.1 m or 0.088 m above the row below.
+    np.testing.assert_allclose(layer.x[new, 1], top + SPACING * (0.4 / surface) ** CLOSER, rtol=1e-12)
+    assert (stretch == 1.0) == np.allclose(layer.x[new, 1], top + SPACING)  # the twin: a spacing, however sparse
 
 
 def test_a_surface_that_stands_over_its_level_is_not_heaped_up():

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.seepage import Resistance, Supply
+from continuum_sph.seepage import Resistance, Supply, reservoir
 from continuum_sph.validation.seepage import dam, infiltration
 from continuum_sph.validation.seepage.dam import DAM, STATIONS, SURFACE, Dam
 from continuum_sph.validation.seepage.infiltration import DRAWN
@@ -44,6 +44,13 @@ def test_a_short_dam_that_lets_much_through_lets_less_through_than_darcy_says():
     # Four times the permeability of the row: what inertia and viscosity take of the flow goes with it.
     into, out, _ = dam.dam.__wrapped__(Dam(length=0.5, permeability=4.0 * 0.5 * dam.CALM), (2.0, 6.0))
     assert 1.0 - 0.5 * (into + out) > tolerance("continuum.dam_50")
+
+
+@pytest.mark.slow
+def test_water_that_comes_in_sparse_presses_too_hard(monkeypatch):
+    monkeypatch.setattr(reservoir, "CLOSER", 0)
+    into, _, _ = dam.dam.__wrapped__(Dam(length=0.5, permeability=0.5 * dam.CALM), dam.CALM_SPAN)
+    assert into - 1.0 > tolerance("continuum.dam_50")
 
 
 @pytest.mark.slow
