@@ -16,6 +16,7 @@ from porescale.output import conclude, options, pixels, stage
 HERE = Path(__file__).resolve().parent
 STAGES = (1.2, 2.4, 4.2, 6.0)  # s
 EVERY = 0.06  # s, between frames
+ABOUT = 0.6  # s, on either side of a time, over which a speed is measured
 
 
 def sight(axes: Axes, given: wetting.Levee, both: Seepage, title: str) -> None:
@@ -41,7 +42,7 @@ def main() -> int:
     places = figure.subplot_mosaic([[f"{when:g}", "way"] for when in STAGES], width_ratios=(2.2, 1.0))
     images, rows = [], []
     numbers: dict[str, float] = {}
-    for count in range(1, round(STAGES[-1] / EVERY) + 1):
+    for count in range(1, round((STAGES[-1] + ABOUT) / EVERY) + 1):
         time = count * EVERY
         while both.time < time:
             both.advance()
@@ -76,8 +77,8 @@ def main() -> int:
 
 
 def speed(times: Floats, ways: Floats, about: float) -> float:
-    """Mean speed (m/s) over 0.6 s about a time, or as much of it as there is."""
-    part = np.abs(times - about) < 0.6
+    """Mean speed (m/s) over ABOUT before and after a time."""
+    part = np.abs(times - about) < ABOUT
     return float(np.polyfit(times[part], ways[part], 1)[0])
 
 
