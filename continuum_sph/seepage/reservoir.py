@@ -191,6 +191,7 @@ class Supply:
             return False
         surface = float(pool.tops.mean()) + 0.5 * self.spacing - pool.bottom
         dense = min(1.0, (pool.level - pool.bottom) / surface) if surface > 0.0 else 1.0
+        dense = max(dense, 1.0 / (1.0 + HEAP))  # what splashes over the strip does not make it sparse
         apart = dense**CLOSER * self.spacing
         free = np.flatnonzero(layer.mass[: layer.fluid] == 0.0)
         for i in free[: min(count, columns)]:

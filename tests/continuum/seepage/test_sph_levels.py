@@ -9,7 +9,7 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply
-from continuum_sph.seepage.reservoir import CLOSER, berths, measure_strip, park_waiting
+from continuum_sph.seepage.reservoir import CLOSER, HEAP, berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
@@ -129,6 +129,20 @@ def test_new_water_is_put_nearer_where_what_stands_there_is_sparse(stretch):
     # 0.4 m of water stand 0.4 or 0.4175 m high: 0.1 m or 0.088 m above the row below.
     np.testing.assert_allclose(layer.x[new, 1], top + SPACING * (0.4 / surface) ** CLOSER, rtol=1e-12)
     assert (stretch == 1.0) == np.allclose(layer.x[new, 1], top + SPACING)  # the twin: a spacing, however sparse
+
+
+def test_water_that_splashes_over_a_strip_brings_new_water_no_nearer_than_a_heap_does():
+    given = supply(pool(0.5, right=2.0, walls=(True, True)))
+    layer, before = given.layer, given.layer.mass > 0.0
+    layer.x[np.flatnonzero(before & (layer.x[:, 1] > 0.3))[::2], 1] += 1.0  # every second of the highest row
+    given.keep(0.0)
+    new = (layer.mass > 0.0) & ~before
+    assert new.any()
+    x = layer.x[layer.mass > 0.0]
+    apart = np.hypot(*(x[:, None] - x[None]).transpose(2, 0, 1)) + np.eye(len(x))
+    assert apart.min() > 0.99 * SPACING / (1.0 + HEAP) ** CLOSER
+    # The twin that must fail: the cube of the level over the mean surface, which would be 0.06 of a spacing.
+    assert (0.4 / 0.9) ** CLOSER < 0.1 < 1.0 / (1.0 + HEAP) ** CLOSER
 
 
 def test_a_surface_that_stands_over_its_level_is_not_heaped_up():
