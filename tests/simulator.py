@@ -37,7 +37,7 @@ class InTurn(kernel.BlockThread):  # type: ignore[misc]
 
 
 def _in_turn(manager: Any, block: tuple[int, ...], *arguments: Any) -> None:
-    """Run a block."""
+    """Run the kernel for all threads of a block."""
     thread = InTurn(manager, block, arguments)
     thread.start()
     thread.join()

@@ -12,7 +12,7 @@ takes out whatever comes.
 
 A particle is put a spacing above what is below it, and nearer by the cube of level over surface where what stands in
 the strip is sparse.  Water would else come in sparser than it is, by 5 %, stand so much higher, and press the more on
-what lies beside it: the discharge of a dam, right at first, is 2.6 % too large after 35 s, and goes on rising.
+what lies beside it: the discharge of a dam, right up to 21 s, is 2.6 % too large up to 35.
 
 Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
 far from each other and from all else that they have no neighbours.  A row without mass is a waiting particle.
@@ -34,7 +34,8 @@ HEAP = 0.1
 """Of the depth: how much higher than its level a surface may stand to make up for what its particles leave empty; a
 column of water that falls is not topped up beyond."""
 CLOSER = 3
-"""Power of level over surface by which particles are put nearer: 1 leaves half of what is sparse."""
+"""Power p of level over surface by which particles are put nearer.  Of a share ε by which water comes in too sparse it
+leaves ε/(1 + p): what stands there has the density γ with γ = (1 - ε)/γ^p."""
 
 
 @kernel

@@ -14,7 +14,7 @@ import numpy as np
 
 from continuum_sph.water.bundles import image, inverse_period, nearest_image, row
 from continuum_sph.water.fluids import pair_fluid
-from continuum_sph.water.smoothing import kernel_kind, kernel_slope, kernel_value, slope_scale, slope_shape
+from continuum_sph.water.smoothing import SUPPORT, kernel_kind, kernel_slope, kernel_value, slope_scale, slope_shape
 from continuum_sph.water.state import RHO, VOLUME, X, Y
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_rows, reduce_add, sqrt, zeros
@@ -44,7 +44,7 @@ def lattice_gradient(kind, h, spacing):
     """1/M of a square lattice, that multiplies plain sums so that gradients are exact on it: 1.027 of Wendland's kernel
     at h = 1.3 spacings.  kind, h (m): of the kernel;  spacing, m."""
     whole = 0.0
-    reach = int(2.0 * h / spacing) + 1
+    reach = int(SUPPORT * h / spacing) + 1
     for column in range(-reach, reach + 1):
         for line in range(-reach, reach + 1):
             x = column * spacing

@@ -7,18 +7,18 @@ from porescale.common.schema.sections import validate
 
 VALIDATIONS = Validations()
 
-WIDTH, GROUND, STANDS = 1.0, 0.2, 0.25  # m: tank, height of the ground, depth of the water once it lies level
+WIDTH, BED, STANDS = 1.0, 0.2, 0.25  # m: of the tank; surface of the ground; depth of the water once it lies level
 SECONDS = 10.0
 
 
 def stirred(spacing: float, seconds: float = SECONDS) -> tuple[float, float]:
-    """(mean height of the water over the ground, less that of water that lies ``STANDS`` deep, in half spacings;
+    """(by how much the water is too deep, twice its mean height over the ground less ``STANDS``, in spacings;
     difference of level between two quarters of the tank, m).
 
     A column twice as deep as it will stand falls from the left half of the tank and sloshes for so many ``seconds``
     over ground that is held and full of water.
     """
-    outline = [[0.0, 0.0], [WIDTH, 0.0], [WIDTH, GROUND], [0.0, GROUND]]
+    outline = [[0.0, 0.0], [WIDTH, 0.0], [WIDTH, BED], [0.0, BED]]
     scene = validate(
         Scene,
         {
@@ -32,8 +32,8 @@ def stirred(spacing: float, seconds: float = SECONDS) -> tuple[float, float]:
             },
             "water": {
                 "column": [
-                    {"width": WIDTH, "height": GROUND},
-                    {"width": 0.5 * WIDTH, "height": 2.0 * STANDS, "bottom": GROUND},
+                    {"width": WIDTH, "height": BED},
+                    {"width": 0.5 * WIDTH, "height": 2.0 * STANDS, "bottom": BED},
                 ],
             },
             "level": [{"x": 0.25 * WIDTH}, {"x": 0.75 * WIDTH}],
@@ -44,9 +44,9 @@ def stirred(spacing: float, seconds: float = SECONDS) -> tuple[float, float]:
         model.advance(50)
     layer = model.state()["water"]["flow"]["layer"]
     height = layer["x"][: len(layer["density"]), 1]
-    mean = float(height[height > GROUND].mean()) - GROUND - 0.5 * STANDS
+    depth = 2.0 * (float(height[height > BED].mean()) - BED)
     levels = [row["level 0 (m)"] - row["level 1 (m)"] for row in model.tables().values() if "level 0 (m)" in row]
-    return mean / (0.5 * spacing), levels[0]
+    return (depth - STANDS) / spacing, levels[0]
 
 
 @VALIDATIONS.row(

@@ -35,7 +35,7 @@ NARROW = Method(magic=1 / 24)
 ANGLES = tuple((k + 0.5) * math.pi / 12 for k in range(3))
 """Of the line of centres, rad: an eighth of a turn, after which angles repeat."""
 SPREAD = 0.7549, 0.5698
-"""Places whose numbers' multiples of these they are, modulo 1, are spread evenly over a cell."""
+"""Places k times these, modulo 1, are spread evenly over a cell: 1/p and 1/p² of p³ = p + 1 (Roberts 2018, R2)."""
 PLACES = ((0.1, 0.0, 0.0), (0.8, 0.3, 0.6), (1.4, 0.7, 0.2), (2.4, 0.5, 0.9))
 """Angle of the line of centres, rad, and the place of its middle within a cell."""
 
