@@ -18,6 +18,7 @@ from porescale.common.pictures import write_film
 from porescale.output import conclude, options, pixels
 
 HERE = Path(__file__).resolve().parent
+FREELY = 4.0  # of the rise that elasticity explains: the rest is flow of soil that yields
 STAGES = {"before": 0.25, "onset": 1.0, "failure": 12.0}
 """Rise of the prism's surface over that at which heave begins."""
 SHOWN = 0.5
@@ -64,7 +65,7 @@ def sight(where: tuple[Axes, Axes], model: Simulation, given: heave.Heave, title
 def frames(given: heave.Heave, every: float = 0.04) -> Iterator[NDArray[np.uint8]]:
     """Pictures of the course until the ground has failed."""
     for _, _, rise, model in given.course(every):
-        if rise > 1.5 * STAGES["failure"] * heave.FREELY * given.elastic:
+        if rise > 1.5 * STAGES["failure"] * FREELY * given.elastic:
             return
         figure = Figure(figsize=(10.0, 3.6), layout="constrained")
         FigureCanvasAgg(figure)
@@ -84,7 +85,7 @@ def main() -> int:
     grid = figure.add_gridspec(4, 2)
     curve, numbers = figure.add_subplot(grid[3, :]), {}
     for share, case in cases(given.rows).items():
-        rows, limit = [], heave.FREELY * case.elastic
+        rows, limit = [], FREELY * case.elastic
         stages = list(STAGES.items()) if share == SHOWN else []
         last = STAGES["failure"] if share == SHOWN else 2.0
         for time, head, rise, model in case.course():

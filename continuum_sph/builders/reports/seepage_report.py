@@ -17,6 +17,8 @@ from porescale.common.core.errors import Fault, InputError
 RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
 REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
 LEAST_BELOW = 2.0  # rows below a pile: with 2 discharges are 1.2 % high
+STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level
+STEADY = 1.4  # h over spacings from which on it does so for longer
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
 
@@ -49,6 +51,11 @@ def seepage_report(scene: Scene) -> Report:
     report_run(out, scene, "soil and water", 2 * len(soil), scene.time.end / step, RATE)
     report_output(out, scene.time.end, scene.output, round(scene.time.end / step), 1000.0 + 2.0 * SNAPSHOT * len(soil))
     report_origin(out, section.origin)
+    if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < STEADY:
+        out.warn(
+            f"water at rest over ground keeps its level for some {STEPS} steps; then its lattice gives way, and it "
+            f"sinks by up to a hundredth of its depth; numerics.smoothing_ratio = {STEADY:g} mends it"
+        )
     if scene.pile:
         pile_report(scene, out)
     if scene.reservoir:

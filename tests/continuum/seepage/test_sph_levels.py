@@ -231,6 +231,16 @@ def test_kernels_too_short_for_pores_and_shifting_are_warned_of():
     assert said({"smoothing_ratio": 2.0}) == [False, False]
 
 
+def test_water_that_is_to_rest_over_ground_for_long_is_warned_of():
+    def said(end, **numerics):
+        given = scene(numerics={"spacing": 0.02} | numerics, time={"end": end})
+        return any("lattice gives way" in text for text in seepage_report(given).warnings)
+
+    assert said(1000.0)
+    assert not said(1000.0, smoothing_ratio=1.4)
+    assert not said(1.0)
+
+
 @pytest.mark.slow
 def test_a_dam_between_levels_is_resumed_bit_for_bit_and_accounts_for_its_water():
     whole, part, resumed = (Simulation(scene()) for _ in range(3))
