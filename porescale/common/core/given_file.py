@@ -1,4 +1,4 @@
-"""Files that people name, read whole: what reading would not end of, or not fit into memory, is refused as unreadable."""
+"""Files that people name, read whole: what reading would not end of, or not fit into memory, cannot be read."""
 
 import errno
 import os

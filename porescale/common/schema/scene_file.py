@@ -61,9 +61,7 @@ def read(file: Path) -> dict[str, Any]:
         raise InputError(Fault("TOML", None, problem, "", f"<= {DEEPEST} levels", file=str(file))) from None
     except tomllib.TOMLDecodeError as error:
         text, _, place = str(error).partition(" (at ")
-        place = place.replace(
-            "end of document", f"line {len(given_text(file).splitlines())}, end of file"
-        )
+        place = place.replace("end of document", f"line {len(given_text(file).splitlines())}, end of file")
         fault = Fault(place.rstrip(")"), problem=text, repair="correct the TOML there", file=str(file))
         raise InputError(fault) from None
     except UnicodeDecodeError as error:

@@ -305,7 +305,9 @@ def _table(path: Path, unit: str) -> tuple[Floats, bool]:
         lines = list(csv.reader(io.StringIO(given_text(path))))
     except UnicodeDecodeError as error:
         line = error.object[: error.start].count(b"\n") + 1
-        raise InputError(Fault("file", str(path), f"line {line} is not UTF-8 text", repair="save it as UTF-8")) from None
+        raise InputError(
+            Fault("file", str(path), f"line {line} is not UTF-8 text", repair="save it as UTF-8")
+        ) from None
     except (OSError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(Fault("file", str(path), f"cannot be read ({reason})", repair="check the name")) from error

@@ -12,8 +12,8 @@ import numpy as np
 
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.given_file import given_text
 from porescale.common.core.extras import extra
+from porescale.common.core.given_file import given_text
 from porescale.common.core.types import Flags, Floats
 from porescale.piv.estimate.measure import Vectors
 

@@ -8,9 +8,9 @@ from porescale.common.core.errors import InputError
 from porescale.common.core.given_file import LARGEST, given_bytes, given_text, require_finite
 from porescale.common.schema.scene_file import read as read_toml
 from porescale.common.studies.parameter_table import read_points
+from porescale.dem.prepare.compaction import read_circles
 from porescale.demseg.numbers import Reader
 from porescale.demseg.state import read_state
-from porescale.dem.prepare.compaction import read_circles
 from porescale.piv.fields.field import read as read_field
 from porescale.piv.images.film import open_film, picture
 
