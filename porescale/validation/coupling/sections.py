@@ -1,6 +1,7 @@
 """In a steady flow through discs as much flows through every section, and solid that stands carries nothing."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +25,7 @@ MOVING = [{**disc, "velocity": (0.0, HEIGHT / (700 * STEP))} for disc in STANDIN
 """Across the flow, two hundredths of a cell a step: along it sections would be alike by symmetry."""
 
 
-def _built(solid_operator: str, relaxation_time: float, discs: Sequence[Mapping[str, float]]) -> Simulation:
+def _built(solid_operator: str, relaxation_time: float, discs: Sequence[Mapping[str, Any]]) -> Simulation:
     """Discs in a periodic box, at time 0."""
     # The viscosity for a step of 1 ms at the relaxation time, and a force that gives Mach 1e-3 or less.
     viscosity = (relaxation_time - 0.5) / 3 * SPACING**2 / STEP
@@ -71,7 +72,7 @@ def _stored(simulation: Simulation) -> Floats:
 def imbalance(
     solid_operator: str,
     relaxation_time: float = 0.8,
-    discs: Sequence[Mapping[str, float]] = STANDING,
+    discs: Sequence[Mapping[str, Any]] = STANDING,
     before: int = 10000,
     steps: int = 20,
 ) -> float:
