@@ -68,7 +68,7 @@ class SaturatedCells:
     rectangle_push, ring_push;  beyond (of its length): areas, cells², that cover no cells but are pushed, set by the
     owner, and joined, joined_area: discs that are pushed by such an area alone, as others cover their cells too;
     driven: whether there is a body force;  entrained (n, 2): mass and moment of inertia of the fluid that took the
-    discs' velocity.  Discs cover cells with the radius ``covering_radius``, larger by ``radius_shift`` (cells²) over it.
+    discs' velocity.  Discs cover cells with ``covering_radius``, larger by ``radius_shift`` (cells²) over the radius.
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
     them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
     that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;
