@@ -294,3 +294,12 @@ def test_circles_are_read_from_a_file_of_fitting_size_only(tmp_path, name):
 def test_a_number_of_grains_is_named_with_what_it_follows_from():
     with pytest.raises(InputError, match=r"packing.number = 3: unknown key; it follows from packing_fraction"):
         packed(number=3)
+
+
+def test_sizes_span_no_more_than_ten_to_one_and_pores_no_less_than_grains_leave():
+    # As of a grading: (1 + 0.8)/(1 - 0.8) = 9; a packing of 1 to 2000 came to no end.
+    with pytest.raises(InputError, match=r"packing.size_spread = 0.999: is out of range \(allowed: >= 0 and <= 0.8\)"):
+        packed(size_spread=0.999)
+    assert packed(size_spread=0.8)
+    with pytest.raises(InputError, match=r"packing.void_ratio = 1e-09: is out of range"):
+        packed(packing_fraction=None, void_ratio=1e-9)
