@@ -160,12 +160,12 @@ def convert(
     from porescale.demseg.tension import tensions
 
     folder = _deck_folder(folder)
+    deck = read_deck(folder)
     name = folder.resolve().name
     file = out or Path(f"{name}.toml")
     require_writable(file.parent, "--out")
     if file.exists() and not overwrite:
         raise InputError(Fault("--out", str(file), "is there already", repair="name another, or --overwrite it"))
-    deck = read_deck(folder)
     if rule != "outline" and any(body.segments for body in deck.bodies):
         problem = "scenes count corners of segments once"
         raise InputError(Fault("--rule", rule, problem, allowed="outline", repair="use porescale demseg run"))

@@ -66,9 +66,9 @@ class SaturatedCells:
     ring_torque: on the others, what the fluid inside them takes already given back;  push (discs + polygons + others,
     2): what the body force does to all of them, not in those loads (push.py), and of each kind disc_push, polygon_push,
     rectangle_push, ring_push;  beyond (of its length): areas, cells², that cover no cells but are pushed, set by the
-    owner;  driven: whether there is a body
-    force;  entrained (n, 2): mass and moment of inertia of the fluid that took the discs' velocity.  Discs cover cells
-    with the radius ``covering_radius``, larger by ``radius_shift`` (cells²) over it.
+    owner, and joined, joined_area: discs that are pushed by such an area alone, as others cover their cells too;
+    driven: whether there is a body force;  entrained (n, 2): mass and moment of inertia of the fluid that took the
+    discs' velocity.  Discs cover cells with ``covering_radius``, larger by ``radius_shift`` (cells²) over the radius.
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
     them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
     that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;
@@ -159,6 +159,7 @@ class SaturatedCells:
         self.push, self.driven = np.zeros((count, 2)), bool(force.any())
         self.disc_push, self.polygon_push = self.push[:discs], self.push[discs:movers]
         self._push_of_others = self.push[movers:]
+        self.joined, self.joined_area = np.zeros(0, np.int64), np.zeros(0)
         self.beyond, self._taken, self._drive = np.zeros(count), np.zeros(count), np.tile(force, (count, 1))
         self._load, self._entrained = np.zeros((count, 3)), np.zeros((count, 2))
         self.force, self.torque, self.entrained = self._load[:discs, :2], self._load[:discs, 2], self._entrained[:discs]
@@ -189,6 +190,7 @@ class SaturatedCells:
             else:
                 held_area(*where, self._half_rate, self._laws[0], self._taken)
             self._taken += self.beyond
+            self._taken[self.joined] = self.joined_area
             self._summed = True
         np.multiply(self._taken[:, None], self._drive, out=self.push)
 

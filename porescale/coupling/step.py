@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.types import Reals
+from porescale.common.core.types import Floats, Reals
 from porescale.coupling.coverage.overlap import overlapping
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.coverage.ring import Ring
@@ -28,6 +28,7 @@ from porescale.coupling.immersed_polygons import ImmersedPolygons, corners_of
 from porescale.coupling.lubrication import CELLS, Lubrication
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import solid_operator as solid_operator_of
+from porescale.dem.bodies.rigid import clumps_of
 from porescale.dem.grains import Grains
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
@@ -88,6 +89,7 @@ class Coupled:
         self._displaced = displaced(grains, self.hydraulic_radius, scales.density)
         whole, thin = (displaced(grains, r, 1.0).mass[seen] for r in (discs.radius, self.hydraulic_radius))
         self.saturated.beyond[seen] = (whole - thin) / scales.spacing**2
+        self._join(covering)
         self._set_immersed(buoyant_weight(grains, scales.density, acceleration))
         self._centre, self._velocity = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
         self._spin = np.zeros(discs.count)
@@ -103,6 +105,22 @@ class Coupled:
                 spacing=scales.spacing, cut=film_gap * scales.spacing, dt=scales.step / contact_steps,
                 shift=self.saturated.radius_shift * scales.spacing**2,
             )  # fmt: skip
+
+    def _join(self, covering: Floats) -> None:
+        """Have a body force push clumps whose members overlap by their union: its cells are those of several members.
+
+        Where the operator takes a force of its own share of a cell alone (push.py), clumps keep the sum of their cells,
+        1.2 % of all that drives too much where a fifth of a clump overlaps.
+
+        covering : (n,) m, the radii that the lattice is covered with.
+        """
+        wet, clumps = self.saturated, clumps_of(self.grains)
+        members = [clumps.discs_of(c) for c in range(clumps.count)] if clumps and wet.operator.force_everywhere else []
+        members = [own for own in members if np.isin(own, wet.pairs).any()]
+        if members:
+            wet.joined = np.concatenate(members)
+            union = displaced(self.grains, covering, 1.0).mass[wet.joined] / self.scales.spacing**2
+            wet.joined_area = union + wet.beyond[wet.joined]
 
     def _set_immersed(self, weight: Reals) -> None:
         """The discs' equation of motion, its arrays as this object's own."""

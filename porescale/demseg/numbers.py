@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import given_bytes
 
 REAL = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[edEDqQ]([+-]?\d+)|([+-]\d+))?")
 """Mantissa, exponent after a letter, exponent without one."""
@@ -39,7 +40,7 @@ class Reader:
         self._over = ""  # of the last record, where it took more lines than it is written on
         self._lines_of: dict[str, int] = {}  # of the values of the last record
         try:
-            given = path.read_bytes()
+            given = given_bytes(path)
         except OSError as error:
             raise InputError(Fault(str(path), problem=f"cannot be read ({error.strerror})")) from None
         encoding = next((name for mark, name in MARKS if given.startswith(mark)), "utf-8")

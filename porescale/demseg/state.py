@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import given_bytes
 
 TYPES = ("float64", "int64", "int32", "uint8")
 WIDTH = 8
@@ -31,7 +32,7 @@ def state_text(state: dict[str, Any]) -> str:
 def read_state(path: Path) -> dict[str, Any]:
     """The nested dict of a file that ``state_text`` made; InputError naming the line where it is none."""
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = given_bytes(path).decode(errors="replace").splitlines()
     except OSError as error:
         raise InputError(Fault(str(path), problem=f"cannot be read ({error.strerror}), jclid 1 needs it")) from None
     state: dict[str, Any] = {}

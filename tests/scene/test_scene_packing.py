@@ -282,15 +282,26 @@ def test_sizes_of_far_too_many_grains_are_refused_before_they_are_drawn(keys, li
 def test_circles_are_read_from_a_file_of_fitting_size_only(tmp_path, name):
     os.mkfifo(tmp_path / name)
     keys = {"grains__packing": None, "grains__circles": {"file": str(tmp_path / name)}}
-    with pytest.raises(InputError, match=r"grains.circles.file = .* is no regular file"):
+    with pytest.raises(InputError, match=r"grains.circles.file = .* cannot be read \(is no regular file\)"):
         dry(**keys)
     (tmp_path / name).unlink()
     with open(tmp_path / name, "wb") as file:
         file.truncate(2**29)  # of nothing: takes no room
-    with pytest.raises(InputError, match=r"is too large \(512 MiB\) \(allowed: <= 256 MiB\)"):
+    with pytest.raises(InputError, match="is too large: 512 MiB, 256 are allowed"):
         dry(**keys)
 
 
 def test_a_number_of_grains_is_named_with_what_it_follows_from():
     with pytest.raises(InputError, match=r"packing.number = 3: unknown key; it follows from packing_fraction"):
         packed(number=3)
+
+
+def test_sizes_span_no_more_than_twenty_to_one_and_pores_no_less_than_grains_leave():
+    # (1 + 0.905)/(1 - 0.905) = 20; a packing of 1 to 2000 came to no end.
+    with pytest.raises(
+        InputError, match=r"packing.size_spread = 0.999: is out of range \(allowed: >= 0 and <= 0.905\)"
+    ):
+        packed(size_spread=0.999)
+    assert packed(size_spread=0.905)
+    with pytest.raises(InputError, match=r"packing.void_ratio = 1e-09: is out of range"):
+        packed(packing_fraction=None, void_ratio=1e-9)

@@ -1,5 +1,5 @@
-"""What compressibility does to a scene beside its Mach number: motion that sound does not keep up with, pistons that
-start at once, and the suction below a gate that rises along grains."""
+"""What compressibility does to a scene beside its Mach number: motion that sound does not keep up with, pistons and
+inflows that start at once, and the suction below a gate that rises along grains."""
 
 import math
 from collections.abc import Iterator
@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from porescale.builders.checks.limits import DENSITY_WARN, SOUND_WARN
 from porescale.builders.checks.own_laws import force_rate, inflow_rate
+from porescale.common.compiled.own import OwnLaw
 from porescale.lbm.scales import Scales
 from porescale.scene.scene import Scene
 from porescale.scene.time_function import TimeFunction
@@ -26,6 +27,9 @@ SWING = 0.1
 """Share of the displaced flow by which a piston's start may still ring halfway through its motion."""
 RAMP = 2 / SWING
 """Ramp, over 1/w of the ringing, that keeps it below."""
+
+
+OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 
 
 class Ringing(NamedTuple):
@@ -103,13 +107,49 @@ def check_pistons(scene: Scene, scales: Scales, warnings: list[str]) -> None:
         )
 
 
+def check_inflows(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Warn of inflows of constant velocity, towards an outlet, whose start still rings halfway through the run."""
+    d = scene.domain
+    for name in d.sides:
+        side, opposite = d.sides[name], d.sides[OPPOSITE[name]]
+        if not side.boundary.prescribes_velocity or not opposite.boundary.passes or isinstance(side.velocity, OwnLaw):
+            continue
+        axis = 0 if name in ("left", "right") else 1
+        if not side.velocity or not side.velocity[axis] or opposite.boundary.prescribes_velocity:
+            continue
+        rate, damping = modes(scene, scales, axis, passes=True)
+        begins = scene.fluid.velocity[axis] if scene.fluid else 0.0
+        step = abs(1.0 - begins / side.velocity[axis])  # of what comes in
+        left = step * math.exp(-0.5 * damping * scene.time.end)
+        if left > SWING:
+            press = step * scales.density * scales.sound_speed * abs(side.velocity[axis])
+            warnings.append(
+                f"the {name} side lets fluid in at once: a pulse of {press:.2g} Pa goes to and fro at"
+                f" {rate / (2 * math.pi):.3g} Hz, and flows swing by {100 * left:.0f} % of what comes in halfway"
+                f" through the run; fluid.velocity, what flows at the start, or an inflow of your own that rises in"
+                f" {RAMP / rate:.2g} s, keeps them below {100 * SWING:g} %"
+            )
+
+
+def modes(scene: Scene, scales: Scales, axis: int, *, passes: bool) -> tuple[float, float]:
+    """The slowest oscillation of sound along an axis, rad/s, and how fast it is damped, 1/s.
+
+    Towards a side that lets fluid through (``passes``) w = pi c/2L, between closed ones pi c/L.  Walls damp by their
+    layers, at the rate sqrt(nu w/2)/H (Kirchhoff 1868; without heat), the fluid itself at about nu w²/c².
+    """
+    size = scene.domain.width, scene.domain.height
+    rate = math.pi * scales.sound_speed / size[axis] * (0.5 if passes else 1.0)
+    beside = ("bottom", "top") if axis == 0 else ("left", "right")
+    walls = 0.5 * sum(scene.domain.sides[name].boundary.no_slip for name in beside)
+    damping = walls * math.sqrt(0.5 * scales.viscosity * rate) / size[1 - axis]
+    return rate, damping + scales.viscosity * (rate / scales.sound_speed) ** 2
+
+
 def ringing(scene: Scene, scales: Scales, k: int) -> Ringing | None:
     """How rectangle ``k`` rings the box; None where it does not for long.
 
-    A plane face that starts at V sends a step of rho c V ahead.  Between it and a side that lets fluid through flows
-    then swing about V by all of it with w = pi c/2L, between closed ones with pi c/L.  Walls damp by their layers, at
-    the rate sqrt(nu w/2)/H (Kirchhoff 1868; without heat), the fluid itself at about nu w²/c².  L is that of the box: a
-    piston far inside rings faster.  A ramp of T leaves |sin(wT/2)/(wT/2)| of it, at most 2/wT.
+    A plane face that starts at V sends a step of rho c V ahead, and flows then swing about V by all of it (``modes``).
+    L is that of the box: a piston far inside rings faster.  A ramp of T leaves |sin(wT/2)/(wT/2)| of it, at most 2/wT.
     """
     it, d = scene.rectangle[k], scene.domain
     axis = 0 if abs(it.velocity[0]) >= abs(it.velocity[1]) else 1
@@ -119,12 +159,7 @@ def ringing(scene: Scene, scales: Scales, k: int) -> Ringing | None:
     if not it.fastest or fills < 0.5 * size[across] or d.periodic[axis] or it.starts_at >= scene.time.end:
         return None
     ahead = ("left", "right") if axis == 0 else ("bottom", "top")
-    passes = any(d.sides[name].boundary.passes for name in ahead)
-    rate = math.pi * scales.sound_speed / size[axis] * (0.5 if passes else 1.0)
-    beside = ("bottom", "top") if axis == 0 else ("left", "right")
-    walls = 0.5 * sum(d.sides[name].boundary.no_slip for name in beside)
-    damping = walls * math.sqrt(0.5 * scales.viscosity * rate) / size[across]
-    damping += scales.viscosity * (rate / scales.sound_speed) ** 2
+    rate, damping = modes(scene, scales, axis, passes=any(d.sides[name].boundary.passes for name in ahead))
     until = scene.time.end if it.stops_at is None else min(it.stops_at, scene.time.end)
     step = min(1.0, 2 / (rate * it.ramp)) if it.ramp else 1.0
     left = step * math.exp(-0.5 * damping * (until - it.starts_at))

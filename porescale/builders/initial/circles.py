@@ -6,13 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import LARGEST, require_finite
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import part
 from porescale.dem.prepare.compaction import read_circles, read_packing
 from porescale.scene.circles import STILLS, Circles
-
-LARGEST = 2**28
-"""Bytes of a file of circles, millions of them: one that is larger holds something else."""
 
 
 def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | str]]:
@@ -39,18 +37,12 @@ def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | s
 
 
 def _require_readable(path: Path) -> None:
-    """InputError for what reading would not end of: a pipe, a device, a file far too large.  What is not there is the
-    reader's to say."""
+    """InputError for what cannot be read, or what reading would not end of."""
     try:
-        is_file, is_other, size = path.is_file(), path.exists() and not path.is_dir(), path.stat().st_size
-    except (OSError, ValueError):
-        return
-    if is_other and not is_file:
-        problem, repair = "is no regular file", "name a .csv, a .h5 or a picture"
-        raise InputError(Fault("file", str(path), problem, repair=repair))
-    if size > LARGEST and is_file:
-        problem, allowed = f"is too large ({size / 2**20:.0f} MiB)", f"<= {LARGEST / 2**20:.0f} MiB"
-        raise InputError(Fault("file", str(path), problem, "", allowed, "name a list of circles or a picture"))
+        require_finite(path, LARGEST)
+    except (OSError, ValueError) as error:  # ValueError: a null in the name
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Fault("file", str(path), f"cannot be read ({reason})", repair="check the name")) from None
 
 
 def _pictured(circles: Circles, path: Path) -> tuple[Floats, Floats]:

@@ -25,6 +25,8 @@ INTERRUPTED = 130
 QUOTA = getattr(errno, "EDQUOT", errno.ENOSPC)
 OF_THE_MACHINE = (errno.ENOSPC, QUOTA, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.EFBIG)
 """What the system may answer to any call, even where it names no file."""
+OF_A_NAME = (errno.ENAMETOOLONG, errno.ELOOP)
+"""What it answers to a name that can be no file's, whatever is on the disk."""
 
 
 GARBAGE = 50_000
@@ -99,7 +101,7 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
         if error.filename is None and error.errno not in OF_THE_MACHINE:
             raise
         _say(f"{error.filename if error.filename is not None else 'writing'}: {error.strerror or error}")
-        return PorescaleError.code
+        return InputError.code if error.errno in OF_A_NAME else PorescaleError.code
 
 
 def _print_anywhere() -> None:

@@ -37,14 +37,15 @@ def command(package: Package) -> Callable[..., int]:
                 print(f"{item.name}{' (slow)' if item.slow else ''}: {item.source}")
             return 0
         chosen = register.chosen(names, slow=slow)
+        folder = None if out is None else output_folder(out)  # refused before what takes long
         use_threads(threads)
         rows = []
         for item in chosen:
             rows.append(item.run())
             verdict = "pass" if rows[-1].passed else "FAIL"
             say(f"{verdict} {item.name} ({rows[-1].seconds:.1f} s)")
-        if out is not None:
-            _keep(output_folder(out), list(register), rows)
+        if folder is not None:
+            _keep(folder, list(register), rows)
         failed = sum(not row.passed for row in rows)
         if json:
             print_json(row.as_dict() for row in rows)

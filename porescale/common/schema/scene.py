@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import pydantic
 
@@ -25,6 +25,11 @@ if TYPE_CHECKING:
 
 class SceneBase(Section):
     """Base of the scenes of all programs.  Two are equal where all their values are, wherever they come from."""
+
+    follows: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("quality_default", "quality"), "the file alone; --quality chooses one of its levels"
+    )
+    """Keys that there are none of, and what they follow from."""
 
     _source: Source = pydantic.PrivateAttr(default_factory=Source)
     _written: dict[str, Any] = pydantic.PrivateAttr(default_factory=dict)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import given_text
 from porescale.common.schema.messages import Key, dotted, parse_key
 from porescale.common.schema.written import plain
 
@@ -51,7 +52,7 @@ DEEPEST = 30
 def read(file: Path) -> dict[str, Any]:
     """The tables of a TOML file; InputError naming the line if it is none."""
     try:
-        table = tomllib.loads(file.read_text(encoding="utf-8-sig"))  # with a byte-order mark or not
+        table = tomllib.loads(given_text(file))  # with a byte-order mark or not
         if _deeper(table, DEEPEST):
             raise RecursionError
         return table
@@ -60,9 +61,7 @@ def read(file: Path) -> dict[str, Any]:
         raise InputError(Fault("TOML", None, problem, "", f"<= {DEEPEST} levels", file=str(file))) from None
     except tomllib.TOMLDecodeError as error:
         text, _, place = str(error).partition(" (at ")
-        place = place.replace(
-            "end of document", f"line {len(file.read_text(encoding='utf-8-sig').splitlines())}, end of file"
-        )
+        place = place.replace("end of document", f"line {len(given_text(file).splitlines())}, end of file")
         fault = Fault(place.rstrip(")"), problem=text, repair="correct the TOML there", file=str(file))
         raise InputError(fault) from None
     except UnicodeDecodeError as error:

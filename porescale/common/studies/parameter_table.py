@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import given_text
 from porescale.common.schema import scene_file
 
 AS_IT_IS = "as-it-is"
@@ -142,7 +143,7 @@ def settings_of(table: Mapping[str, Any]) -> tuple[str, ...]:
 
 def _of_csv(path: Path) -> Iterator[Point]:
     try:
-        lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
+        lines = list(csv.reader(given_text(path).splitlines()))
     except OSError as error:
         raise InputError(Fault("table", None, f"cannot be read ({error.strerror})")) from None
     except UnicodeDecodeError as error:

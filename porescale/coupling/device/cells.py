@@ -39,6 +39,7 @@ class DeviceSaturatedCells(SaturatedCells):
         self._load[...], self._entrained[...], area, rim = there.receive()
         if self.driven and there.moved:
             np.add(area, self.beyond, out=self._taken)
+            self._taken[self.joined] = self.joined_area
         self._summed = True
         if self.soft_rim:
             self.soft_rim.sums[...] = rim

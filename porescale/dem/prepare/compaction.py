@@ -21,6 +21,7 @@ import numpy as np
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError, PorescaleError
+from porescale.common.core.given_file import given_text
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import place
 from porescale.dem.contact.linear import Linear
@@ -301,9 +302,15 @@ def read_circles(
 def _table(path: Path, unit: str) -> tuple[Floats, bool]:
     """Columns x, y, size (n, 3) of a file in its unit, and whether the size is a radius."""
     try:
-        lines = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(Fault("file", str(path), f"cannot be read ({error})", repair="check the name")) from error
+        lines = list(csv.reader(io.StringIO(given_text(path))))
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise InputError(
+            Fault("file", str(path), f"line {line} is not UTF-8 text", repair="save it as UTF-8")
+        ) from None
+    except (OSError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Fault("file", str(path), f"cannot be read ({reason})", repair="check the name")) from error
     header = [cell.strip().lower() for cell in lines[0]] if lines else []
     names = [cell.partition("(")[0].strip() for cell in header]
     by_radius = "diameter" not in names

@@ -13,6 +13,7 @@ import numpy as np
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.extras import extra
+from porescale.common.core.given_file import given_text
 from porescale.common.core.types import Flags, Floats
 from porescale.piv.estimate.measure import Vectors
 
@@ -179,7 +180,7 @@ def read(path: Path) -> Field:
     pixels, and turned.  InputError for files that are neither, or whose points are no grid.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = given_text(Path(path))
     except (OSError, UnicodeDecodeError) as error:
         problem = getattr(error, "strerror", None) or "is no text"
         raise InputError(Fault("field", str(path), f"cannot be read ({problem})")) from error

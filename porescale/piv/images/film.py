@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import given_bytes, require_finite
 from porescale.piv.images import stacks
 
 Picture = NDArray[Any]
@@ -24,7 +25,7 @@ STILLS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm", ".webp")
 def picture(path: Path) -> Picture:
     """A grey picture (rows, columns), 8 or 16 bits; colour becomes its luminance.  InputError if it cannot be read."""
     try:
-        content = np.frombuffer(Path(path).read_bytes(), np.uint8)
+        content = np.frombuffer(given_bytes(Path(path)), np.uint8)
     except OSError as error:
         raise InputError(Fault("picture", str(path), f"cannot be read ({error.strerror})")) from error
     try:
@@ -186,6 +187,7 @@ def _unreadable(path: Path, error: Exception) -> InputError:
 def _decoded(path: Path) -> Iterator[Picture]:
     """Frames of a film, grey."""
     try:
+        require_finite(path)
         with av.open(str(path), metadata_errors="replace") as container:
             if not container.streams.video:
                 raise InputError(Fault("film", str(path), "holds no pictures"))
@@ -198,6 +200,7 @@ def _decoded(path: Path) -> Iterator[Picture]:
 def _stream(path: Path, name: str) -> Any:
     """An attribute of a film's first stream."""
     try:
+        require_finite(path)
         with av.open(str(path), metadata_errors="replace") as container:
             if not container.streams.video:
                 raise InputError(Fault("film", str(path), "holds no pictures"))

@@ -4,7 +4,10 @@ import math
 
 import numpy as np
 
+from porescale.builders.build import build
+from porescale.builders.scene import Scene
 from porescale.common.evidence.validations import Measured, Validations
+from porescale.common.schema.sections import validate
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.step import Coupled
 from porescale.lbm.lattice import viscosity
@@ -81,3 +84,32 @@ def neutral_start() -> Measured:
     """Speed over G t after 400 steps of the water and of two free discs, exact walls at lambda 1 and 0.8."""
     found = [value for ratio in (1.0, 0.8) for value in start(ratio)]
     return Measured.absolute([1.0] * len(found), found)
+
+
+def clump_start(solid_operator: str) -> float:
+    """Speed over G t of a free clump of two discs of the fluid's density, which overlap, once 0.4 s have passed."""
+    periodic = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
+    scene = {
+        "domain": {"width": 9e-3, "height": 7e-3, **periodic}, "gravity": (0.0, 0.0), "time": {"end": 1.0},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+        "fluid": {"density": 1000.0, "viscosity": 2.5e-5, "spacing": 5e-4, "relaxation_time": 0.8,
+                  "body_force": (1.0, 0.0), "solid_operator": solid_operator},
+        "grains": {"density": 1000.0, "hydraulic_radius_ratio": 1.0},
+        "clump": [{"discs": [[0, 0, 1.3e-3], [1.2e-3, 0, 1.0e-3]], "at": [[4e-3, 3e-3]]}],
+        "contact": {"stiffness": 1e4, "restitution": 0.5},
+    }  # fmt: skip
+    simulation = build(validate(Scene, scene))
+    simulation.advance(400)
+    return float(simulation.velocities[0, 0]) / (1e-3 * simulation.time)
+
+
+@VALIDATIONS.row(
+    "coupling.neutral_clumps_start_with_the_water",
+    source="a pressure gradient accelerates water and bodies of its density alike, G t",
+    because="0.5 % as for discs; a push that counts twice where members overlap, 2.4 % of the box, speeds all of it up",
+    tolerance=5e-3,
+)
+def neutral_clump() -> Measured:
+    """Speed over G t of a clump whose members overlap by a fifth of it."""
+    found = clump_start("exact-wall")
+    return Measured.absolute([1.0], [found])

@@ -222,6 +222,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_model_is_built(de
     for option in ("--overwrite", "--resume"):
         assert "card.json there is a folder" in refused(decay, "run", "decay", "--out", "odd", option)
     assert refused(decay, "check", LONG) == "SCENE: cannot be read (File name too long); name another"
+    assert refused(decay, "report", LONG) == f"{LONG}/card.json: File name too long"
 
 
 def test_a_folder_that_the_system_withholds_is_wrong_input_and_nothing_is_left(decay, monkeypatch) -> None:

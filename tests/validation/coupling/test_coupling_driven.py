@@ -7,6 +7,7 @@ import pytest
 
 from porescale.builders.build import build
 from porescale.coupling.psm import SaturatedCells
+from porescale.coupling.step import Coupled
 from porescale.scene.scene import Scene
 from porescale.validation.coupling import driven
 from porescale.validation.coupling import setups as lab
@@ -91,3 +92,10 @@ def test_momentum_of_free_bodies_and_water_grows_by_all_that_drives():
     grown = coupled.momentum()[0] - before
     assert grown == pytest.approx(force * 60 * 40 * steps, rel=2e-3)
     assert pushed > 0.1 * grown  # the twin: without it as much would lack
+
+
+def test_a_clump_is_pushed_by_its_union(monkeypatch):
+    allowed = tolerance("coupling.neutral_clumps_start_with_the_water")
+    assert driven.clump_start("exact-wall") == pytest.approx(1.0, abs=allowed)
+    monkeypatch.setattr(Coupled, "_join", lambda *given: None)  # the twin: the area of both members
+    assert driven.clump_start("exact-wall") == pytest.approx(1.028, abs=0.002)
