@@ -94,7 +94,7 @@ def test_a_scene_starts_from_a_picture(bed, tmp_path):
     ({"smallest": "4 mm"}, r"circles.smallest.*must be below the largest"),
     ({"smallest": "0.3 mm"}, r"circles.smallest.*too few pixels"),
     ({"file": "bed.csv"}, r"circles.pixel.*is for pictures"),
-    ({"file": "none.png"}, r"circles.picture.*none.png.*cannot be read"),
+    ({"file": "none.png"}, r"circles.file.*none.png.*cannot be read"),
 ])  # fmt: skip
 def test_pictures_that_say_too_little_are_refused(keys, said, tmp_path):
     with pytest.raises(InputError, match=said):
