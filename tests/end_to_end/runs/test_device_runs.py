@@ -60,7 +60,7 @@ Command = Callable[..., tuple[int, list[str]]]
 
 @pytest.fixture
 def porescale(tmp_path, monkeypatch, capsys) -> Command:
-    """Runs a command line, without pictures, in a folder with the scene; gives exit code and lines of stderr but warnings."""
+    """Runs a command line, without pictures, in a folder with the scene; exit code and lines of stderr but warnings."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", str(ROOT))  # processes of their own run the sources of this one
     monkeypatch.setattr("porescale.program.show", lambda _: [])
