@@ -14,7 +14,7 @@ import pydantic
 
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.given_file import given_bytes
+from porescale.common.core.given_file import given_bytes, reason
 from porescale.common.core.statistics import half_width
 from porescale.common.core.units import to_si
 from porescale.common.schema import scene_file
@@ -121,8 +121,9 @@ def read_material(path: Path) -> tuple[MaterialFile, str]:
             raise InputError(Fault("soil.material", str(path), problem, repair=repair))
         digest = hashlib.sha256(given_bytes(path)).hexdigest()
     except (OSError, ValueError) as error:  # a name too long, or with a null in it; no right to read
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(Fault("soil.material", str(path), f"cannot be read ({reason})", repair=repair)) from None
+        raise InputError(
+            Fault("soil.material", str(path), f"cannot be read ({reason(error)})", repair=repair)
+        ) from None
     table = scene_file.read(path)
     number = table.get("format")
     if number != FORMAT or isinstance(number, bool):

@@ -31,6 +31,7 @@ class Packing(Section):
     width: float = quantity("m", **LENGTH, help="width of the rectangle")
     height: float = quantity("m", **LENGTH, help="height of the rectangle")
     diameter: float = quantity("m", **LENGTH, help="mean diameter of the grains")
+    # s = 0.905: sizes of 1 to 20, (1 + s)/(1 - s)
     size_spread: float = quantity("", 0.1, ge=0, le=0.905, help="half width of the diameters over their mean")
     packing_fraction: float = quantity("", 0.81, ge=1e-3, le=0.84, help="grain area over the rectangle's area")
     seed: int = pydantic.Field(1, ge=0, description="seed of the random placement")
@@ -39,6 +40,7 @@ class Packing(Section):
     settling_rolling_friction: float = quantity(
         "", 0.0, **FRICTION, help="friction of rolling while preparing, for looser packings; 0: that of the contact law"
     )
+    # pores that the largest packing_fraction leaves, 1/0.84 - 1
     void_ratio: float | None = quantity(
         "", None, ge=0.1905, lt=1e3, help="pores over grains, instead of packing_fraction"
     )

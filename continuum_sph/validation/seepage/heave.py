@@ -182,8 +182,10 @@ class Heave:
 
     def stands(self, head: float, seconds: float = 2.0) -> bool:
         """Whether ground under a ``head`` (over i_c s) that is held does not heave within ``seconds`` after WAIT."""
-        kept = replace(self, first=head, last=head + BARELY, rate=BARELY / (WAIT + seconds + 0.1))
-        rows = [(time, rise) for time, _, rise, _ in kept.course(0.05)]
+        every = 0.05
+        end = WAIT + seconds + 2.0 * every  # a row may come a step late, and a last one not at all
+        kept = replace(self, first=head, last=head + BARELY, rate=BARELY / end)
+        rows = [(time, rise) for time, _, rise, _ in kept.course(every)]
         return not kept.heaves(rows, seconds)
 
 

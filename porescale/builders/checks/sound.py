@@ -27,9 +27,8 @@ SWING = 0.1
 """Share of the displaced flow by which a piston's start may still ring halfway through its motion."""
 RAMP = 2 / SWING
 """Ramp, over 1/w of the ringing, that keeps it below."""
-
-
 OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
+"""The side that sound from a side comes to."""
 
 
 class Ringing(NamedTuple):

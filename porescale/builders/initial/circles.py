@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.given_file import LARGEST, require_finite
+from porescale.common.core.given_file import LARGEST, reason, require_finite
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import part
 from porescale.dem.prepare.compaction import read_circles, read_packing
@@ -41,8 +41,8 @@ def _require_readable(path: Path) -> None:
     try:
         require_finite(path, LARGEST)
     except (OSError, ValueError) as error:  # ValueError: a null in the name
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(Fault("file", str(path), f"cannot be read ({reason})", repair="check the name")) from None
+        problem = f"cannot be read ({reason(error)})"
+        raise InputError(Fault("file", str(path), problem, repair="check the name")) from None
 
 
 def _pictured(circles: Circles, path: Path) -> tuple[Floats, Floats]:

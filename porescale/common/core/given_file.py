@@ -25,6 +25,11 @@ def given_bytes(path: Path) -> bytes:
     return path.read_bytes()
 
 
+def reason(error: Exception) -> str:
+    """Why a file cannot be read: what the system says, or else the error itself (a null in a name, a broken table)."""
+    return getattr(error, "strerror", None) or str(error)
+
+
 def given_text(path: Path) -> str:
     """The text of such a file, with a byte-order mark or without; UnicodeDecodeError where it is not UTF-8."""
     return given_bytes(path).decode("utf-8-sig")

@@ -21,7 +21,7 @@ import numpy as np
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError, PorescaleError
-from porescale.common.core.given_file import given_text
+from porescale.common.core.given_file import given_text, reason
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import place
 from porescale.dem.contact.linear import Linear
@@ -309,8 +309,8 @@ def _table(path: Path, unit: str) -> tuple[Floats, bool]:
             Fault("file", str(path), f"line {line} is not UTF-8 text", repair="save it as UTF-8")
         ) from None
     except (OSError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(Fault("file", str(path), f"cannot be read ({reason})", repair="check the name")) from error
+        problem = f"cannot be read ({reason(error)})"
+        raise InputError(Fault("file", str(path), problem, repair="check the name")) from error
     header = [cell.strip().lower() for cell in lines[0]] if lines else []
     names = [cell.partition("(")[0].strip() for cell in header]
     by_radius = "diameter" not in names

@@ -96,6 +96,6 @@ def test_momentum_of_free_bodies_and_water_grows_by_all_that_drives():
 
 def test_a_clump_is_pushed_by_its_union(monkeypatch):
     allowed = tolerance("coupling.neutral_clumps_start_with_the_water")
-    assert driven.clump_start("exact-wall") == pytest.approx(1.0, abs=allowed)
+    assert driven.clump_start() == pytest.approx(1.0, abs=allowed)
     monkeypatch.setattr(Coupled, "_join", lambda *given: None)  # the twin: the area of both members
-    assert driven.clump_start("exact-wall") == pytest.approx(1.028, abs=0.002)
+    assert driven.clump_start() == pytest.approx(1.028, abs=0.002)
