@@ -22,6 +22,7 @@ END = 0.5  # s: the fall and the tongue
 COLUMNS = ("time (s)", "centre of mass y (m)", "front (m)")
 HIGH, LOW = 0.036, 0.0102  # m, of the centre of mass: where it starts, where it ends
 SHOWN = (0.25, 0.5)  # s
+LEVELS = ("draft", "standard", "fine")
 
 Rows = list[list[float]]
 """Time (s), height of the centre of mass (m), front (m)."""
@@ -74,7 +75,7 @@ def table(runs: Runs) -> list[str]:
         "commit",
     )
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    for (level, ratio, commit), made in sorted(runs.items()):
+    for (level, ratio, commit), made in sorted(runs.items(), key=lambda it: (LEVELS.index(it[0][0]), *it[0][1:])):
         fallen = [[100.0 * (HIGH - np.interp(t, *np.array(one).T[:2])) / (HIGH - LOW) for one in made] for t in SHOWN]
         front = [100.0 * (0.09 - one[-1][2]) / 0.09 for one in made]
         cells = [spread([half(one) for one in made], 1.0, 2), *(spread(it, 1.0, 0) for it in (*fallen, front))]
@@ -84,7 +85,7 @@ def table(runs: Runs) -> list[str]:
 
 def draw(runs: Runs, path: Path) -> None:
     """Centre of mass over time, a panel for each level, a line for each packing, a colour for each ratio."""
-    levels = sorted({level for level, *_ in runs})
+    levels = sorted({level for level, *_ in runs}, key=LEVELS.index)
     ratios = sorted({ratio for _, ratio, _ in runs})
     figure = Figure(figsize=(4.6 * len(levels) + 1.0, 3.8), layout="constrained")
     for k, level in enumerate(levels):
