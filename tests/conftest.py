@@ -34,6 +34,9 @@ os.environ.setdefault("NUMBA_ENABLE_CUDASIM", "1")
 # first import of numpy.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# What a shell starts in the background ignores Ctrl-C, until a notebook's client takes the handler of a terminal back.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--share", help="of the slow tests run an n-th, the k-th, beside the others: k/n")
