@@ -27,8 +27,8 @@ water's particles go on.  That would not hold for the obvious pair -∇(n p) + p
 particles and cancel to a few per cent of p n/h.  Viscosity of q goes the same way as its pressure.
 
 Drag on the water of a unit volume: -β (v_f - v_s), β = n² ρ_f g/k, where v_s is the mean of the soil about the
-particle by ψ/k (`resistance`).  With the difference A of the other accelerations held over a time T, the relative
-velocity is
+particle by ψ/k, and β at surfaces of the soil, which kernels smear, is sharpened (`resistance`).  With the difference A
+of the other accelerations held over a time T, the relative velocity is
 
     w' = w e^(-κT) + A (1 - e^(-κT))/κ,   κ = β (1/n ρ_f + 1/(1-n) ρ_s)
 
@@ -42,8 +42,8 @@ grains (ψ = 0), has the conductivity k/n: such layers consolidate 1/n times too
 effect on the water.
 
 Parts: `Skeleton`, the soil as the water equations need it (`skeleton`);  `Overlap`, neighbours across layers
-(`overlap`);  `PoreFlow`, a `Flow` of water in it (`pores`);  `Drain`, faces of given pressure (`drain`);
-`Supply`, water kept at levels (`level`);  `Seepage`, both layers moving (`step`).
+(`overlap`);  `PoreFlow`, a `Flow` of water in it (`pores`);  `Drain`, faces of given pressure (`pressure_face`);
+`Supply`, water kept at levels (`reservoir`);  `Seepage`, both layers moving (`step`).
 """
 
 import lazy_loader

@@ -11,14 +11,16 @@ from continuum_sph.seepage.mixture import (
     ROOM,
     SLIP_X,
     SLIP_Y,
+    SOIL,
     WEIGHT,
 )
-from continuum_sph.seepage.resistance import drag
+from continuum_sph.seepage.resistance import drag, sharpened
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, gather_two, load, minimum, reduce_add, store, zeros
+from porescale.common.compiled.simd import LANES, gather_two, load, maximum, minimum, reduce_add, store, zeros
 
 LONGEST = 44.0  # times of relaxation: e^-44 is less than half a unit in the last place of 1
 HALVINGS = 6  # of it, after which the series needs 12 terms: (44/64)^12/13! is 2e-12 of half such a unit
+SLOWEST = 1e-16  # 1/s: where nothing resists, the impulse per pull would divide 0 by 0
 PER_SLIP, PER_PULL, SHARE, INVERSE_MASS = range(4)
 """Lines of parts, of a water particle: impulse per slip, kg/m; per pull, kg s/m; 1/R; 1/m."""
 
@@ -94,7 +96,9 @@ def apply_drag(fluid, pores, v, law, factor, seconds, parts, push, heat):
         mass = load(lines, MASS * width + first, MASS * width + end)
         own = 1.0 / (porosity * rho)
         specific_volume = own + room / partial
-        kappa = drag(law, porosity, resisting / room, unit, factor) * specific_volume
+        soil = load(lines, SOIL * width + first, SOIL * width + end)
+        sum_of = resisting / room * sharpened(soil / room)
+        kappa = maximum(drag(law, porosity, sum_of, unit, factor) * specific_volume, SLOWEST)
         gone = relaxation(kappa * seconds)
         impulse = mass * own / specific_volume
         store(parts[PER_SLIP], first, end, impulse * gone)

@@ -15,12 +15,13 @@ from porescale.common.compiled.simd import LANES, gather_four, gather_rows, mask
 from porescale.common.neighbors.cells import minimum_image
 
 (
-    POROSITY, ROOM, GRAINS, FLUX_X, FLUX_Y, RESISTING, MASSES, DENSITY, MASS, WEIGHT, SLIP_X, SLIP_Y, PULL_X, PULL_Y,
-) = range(14)  # fmt: skip
+    POROSITY, ROOM, GRAINS, FLUX_X, FLUX_Y, RESISTING, SOIL, MASSES, DENSITY, MASS, WEIGHT, SLIP_X, SLIP_Y, PULL_X,
+    PULL_Y,
+) = range(15)  # fmt: skip
 """Lines of pores, of each water particle: n;  Ω;  Σ V^grains W;  the same times velocity, m/s;  R = Σ r W with r =
-V^grains/k, s/m;  Σ m W, kg/m³;  its own density kg/m³, mass kg/m and what stands for ρ g in the drag, N/m³;  velocity
-(m/s) and acceleration (m/s²) less the soil's mean by r W."""
-LINES = 14
+V^grains/k, s/m;  Σ V W of the soil, grains and pores;  Σ m W, kg/m³;  its own density kg/m³, mass kg/m and what stands
+for ρ g in the drag, N/m³;  velocity (m/s) and acceleration (m/s²) less the soil's mean by r W."""
+LINES = 15
 LEAST_ROOM = 0.2  # of a kernel: a particle in a right-angled corner has a quarter
 GROUND = 0.25  # share of grains from which on water counts as among them: loose sand has 0.45, its surface half of that
 LEAST_POROSITY = 0.05  # grains packed more densely leave the water the volume of this porosity
@@ -28,7 +29,7 @@ LEAST_POROSITY = 0.05  # grains packed more densely leave the water the volume o
 
 @parallel_kernel
 def gather_soil(fluid, near, soil, weight, record, mass, burden, gravity, specific_weight, pores, reach):
-    """Overwrites ``weight`` (m,) 1/m² of the water's rows, W, and all lines of ``pores`` (14, fluid…) but porosity,
+    """Overwrites ``weight`` (m,) 1/m² of the water's rows, W, and all lines of ``pores`` (15, fluid…) but porosity,
     room and pull.
 
     near, soil, weight: rows of the overlap;  record: of the water alone;  mass (fluid…,) kg/m;  burden: see Skeleton;
@@ -46,12 +47,13 @@ def gather_soil(fluid, near, soil, weight, record, mass, burden, gravity, specif
         flux_x = zeros()
         flux_y = zeros()
         resisting = zeros()
+        soils = zeros()
         masses = zeros()
         flow_x = zeros()
         flow_y = zeros()
         k = near[i]
         while k < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
-            xj, yj, volume, resistance, inertia, vx, vy, _ = gather_rows(burden, soil, k, near[i + 1], 0, 0, fluid)
+            xj, yj, volume, resistance, inertia, vx, vy, bulk = gather_rows(burden, soil, k, near[i + 1], 0, 0, fluid)
             near_by = overlap_kernel(xi - xj, yi - yj, h, period_x, period_y, turns_x, turns_y)
             near_by = mask_tail(near_by, k, near[i + 1])
             store(weight, k, near[i + 1], near_by)
@@ -65,11 +67,13 @@ def gather_soil(fluid, near, soil, weight, record, mass, burden, gravity, specif
             flow_x += share * vx
             flow_y += share * vy
             masses += inertia * near_by
+            soils += bulk * near_by
         pores[GRAINS, i] = reduce_add(grains)
         pores[FLUX_X, i] = reduce_add(flux_x)
         pores[FLUX_Y, i] = reduce_add(flux_y)
         resists = reduce_add(resisting)
         pores[RESISTING, i] = resists
+        pores[SOIL, i] = reduce_add(soils)
         pores[MASSES, i] = reduce_add(masses)
         pores[DENSITY, i] = record[i, RHO]
         pores[MASS, i] = mass[i]
@@ -81,7 +85,7 @@ def gather_soil(fluid, near, soil, weight, record, mass, burden, gravity, specif
 
 @parallel_kernel
 def mix_fluxes(fluid, start, split, partner, record, home, pores, h, period_x, period_y):
-    """Overwrites porosity and room in ``pores`` (14, fluid…), and in ``record`` the velocity by q and the volume by
+    """Overwrites porosity and room in ``pores`` (15, fluid…), and in ``record`` the velocity by q and the volume by
     m/(n ρ_f), of water.
 
     start, split, partner: the water's full list, walls from ``split[i]`` on, which have the volume that ``record``

@@ -33,10 +33,10 @@ from porescale.common.core.types import Floats
 class PoreFlow(Flow):
     """Water of a law among the grains of a skeleton.
 
-    resistance : law of drag;  specific_weight (fluid,) N/m³, of several
-    fluids, see `gather_soil`, or empty;  drains : faces of given
-    pressure;  pores (14, fluid + LANES) what water particles have about them, see `mixture`;  borne (soil, 2) N/m, drag
-    on the soil of the last half step;  heat (fluid + soil,) J/m, work that drag took from both layers.
+    resistance : law of drag;  specific_weight (fluid,) N/m³, of several fluids, see `gather_soil`, or empty;  drains :
+    faces of given pressure;  pores (15, fluid + LANES) what water particles have about them, see `mixture`;  borne
+    (soil, 2) N/m, drag on the soil of the last half step;  heat (fluid + soil,) J/m, work that drag took from both
+    layers.
     """
 
     skeleton: Skeleton = field(kw_only=True)

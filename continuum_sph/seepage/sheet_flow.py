@@ -20,13 +20,15 @@ within 0.01 of finite volumes.  The exit gradient weighs the same displacement b
 
     κ = (K/E) cos²(πs/2T)/π.
 
-Kernels round off the root of the tip: the flow is that of a sheet ROUNDED spacings longer still.
+Kernels round off the root of the tip: the flow is that of a sheet that is longer still, by so many spacings
+(`ROUNDED`).
 """
 
 import numpy as np
 
-ROUNDED = 0.15
-"""Spacings: 0.08 to 0.25 for s/T from 0.9 to 0.2, at 20 and 40 rows, h of 1.3 spacings."""
+ROUNDED = 0.31, 0.3
+"""Spacings at s/T = 0 and how many fewer at 1: to 0.02, by discharges and by exit gradients, for s/T of 0.2 to 0.9 with
+20 and 40 rows, h of 1.3 spacings (`continuum_sph.validation.seepage.sheet_pile`)."""
 
 
 def modulus(share: float) -> float:
@@ -51,9 +53,10 @@ def exit_gradient(share: float) -> float:
 
 
 def longer(share: float, rows: float) -> float:
-    """How much longer than itself a slab one spacing thick is for the flow, in spacings, ε + ROUNDED;  ``share`` = s/T;
-    rows : T over the spacing."""
-    return float((1.0 + np.log(8.0 * rows * np.sin(np.pi * share))) / (2.0 * np.pi) + ROUNDED)
+    """How much longer than itself a slab one spacing thick is for the flow, in spacings, kernels' part included;
+    ``share`` = s/T;  rows : T over the spacing."""
+    slab = (1.0 + np.log(8.0 * rows * np.sin(np.pi * share))) / (2.0 * np.pi)
+    return float(slab + ROUNDED[0] - ROUNDED[1] * share)
 
 
 def shorter(share: float) -> float:

@@ -13,9 +13,11 @@ HEAVIEST = 1e300  # kg/m: stands for the infinite mass of soil that is held, as 
 
 
 @parallel_kernel
-def show_soil(x, v, mass, grains, resisting, burden):
+def show_soil(x, v, mass, density, solid, grains, resisting, burden):
     """Overwrites ``burden`` (s, 8), all that water reads of a soil particle, in one cache line: place m, grains m²,
-    resisting m s, mass kg/m, velocity m/s."""
+    resisting m s, mass kg/m, velocity m/s, volume with its pores m².
+
+    density (s,), solid: see `Skeleton`."""
     for s in prange(mass.shape[0]):
         burden[s, 0] = x[s, 0]
         burden[s, 1] = x[s, 1]
@@ -24,6 +26,7 @@ def show_soil(x, v, mass, grains, resisting, burden):
         burden[s, 4] = min(HEAVIEST, mass[s])
         burden[s, 5] = v[s, 0]
         burden[s, 6] = v[s, 1]
+        burden[s, 7] = grains[s] * solid / density[s]
 
 
 @parallel_kernel
@@ -39,8 +42,9 @@ class Skeleton:
     """Views of a soil's arrays, all (soil, …), and what water needs besides.
 
     x m;  v m/s;  acceleration m/s²;  force N/m, overwritten by water;  mass kg/m, infinite for soil that is held;
-    grains : volume of solid, m² (per metre of depth), constant;  permeability : k, m/s;  foot : of a pile, see
-    `sheet_pile.Foot`, or None.
+    density : of soil without its water, and ``solid``, of its grains, kg/m³: a particle's volume is that of its grains
+    times solid over density;  grains : volume of solid, m² (per metre of depth), constant;  permeability : k, m/s;
+    foot : of a pile, see `sheet_pile.Foot`, or None.
     """
 
     x: Floats
@@ -48,6 +52,8 @@ class Skeleton:
     acceleration: Floats
     force: Floats
     mass: Floats
+    density: Floats
+    solid: float
     grains: Floats
     permeability: Floats
     foot: Foot | None = None
@@ -61,7 +67,7 @@ class Skeleton:
         count = len(self.x)
         for name in ("v", "acceleration", "force"):
             assert getattr(self, name).shape == (count, 2), name
-        for name in ("mass", "grains", "permeability"):
+        for name in ("mass", "density", "grains", "permeability"):
             assert getattr(self, name).shape == (count,), name
         self.plain = self.grains / self.permeability
         self.resisting = self.plain.copy()
@@ -76,7 +82,7 @@ class Skeleton:
     def show(self) -> None:
         """Take places and velocities of now into ``burden``."""
         self.resist()
-        show_soil(self.x, self.v, self.mass, self.grains, self.resisting, self.burden)
+        show_soil(self.x, self.v, self.mass, self.density, self.solid, self.grains, self.resisting, self.burden)
 
     def weigh(self, values: Floats) -> Floats:
         """``values`` (soil, 2) times ``resisting``, in ``shown``."""
@@ -94,7 +100,8 @@ def skeleton_of(flow: SoilFlow, density: float, permeability: Floats | float) ->
     soil, n = flow.soil, flow.soil.soil
     k = np.broadcast_to(np.asarray(permeability, np.float64), n).copy()
     mass = soil.mass[:n]
-    return Skeleton(soil.x[:n], soil.v[:n], soil.acceleration, soil.force, mass, mass / density, k)
+    own = soil.density[:n]
+    return Skeleton(soil.x[:n], soil.v[:n], soil.acceleration, soil.force, mass, own, density, mass / density, k)
 
 
 class Frame:
@@ -111,7 +118,8 @@ class Frame:
         v, acceleration, force = (np.zeros((count, 2)) for _ in range(3))
         grains = np.full(count, (1.0 - porosity) * volume)
         k = np.broadcast_to(np.asarray(permeability, np.float64), count).copy()
-        self.skeleton = Skeleton(x, v, acceleration, force, np.full(count, np.inf), grains, k)
+        share = np.full(count, 1.0 - porosity)
+        self.skeleton = Skeleton(x, v, acceleration, force, np.full(count, np.inf), share, 1.0, grains, k)
 
     def start(self) -> None:
         """Do nothing: held ground has no accelerations."""

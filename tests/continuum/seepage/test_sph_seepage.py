@@ -16,6 +16,7 @@ from continuum_sph.seepage.mixture import (
     RESISTING,
     SLIP_X,
     SLIP_Y,
+    SOIL,
     WEIGHT,
     gather_soil,
     load_soil,
@@ -25,7 +26,7 @@ from continuum_sph.seepage.mixture import (
 )
 from continuum_sph.seepage.overlap import Overlap, Reach, overlap_kernel, overlap_weights
 from continuum_sph.seepage.pressure_face import drain_walls
-from continuum_sph.seepage.resistance import drag
+from continuum_sph.seepage.resistance import drag, sharpened
 from continuum_sph.seepage.skeleton import show_soil, weigh
 from continuum_sph.water.bundles import Neighbours
 from continuum_sph.water.kernel_correction import lattice_gradient
@@ -48,6 +49,7 @@ def plain():
         patch.setattr(mixture, "overlap_kernel", overlap_kernel.py_func)
         patch.setattr(exchange, "relaxation", relaxation.py_func)
         patch.setattr(exchange, "drag", drag.py_func)
+        patch.setattr(exchange, "sharpened", sharpened.py_func)
         yield
 
 
@@ -66,7 +68,14 @@ def place(plain):
     overlap_weights.py_func(pairs.start, pairs.partner, np.concatenate((x, soil_x)), weight, H, 1.0, 1.0)
     values = {name: rng.normal(size=(n, 2)) for name in ("v", "soil_v", "a", "soil_a")}
     rho = 1000.0 + rng.normal(size=n)
-    rest = {"mass": np.full(n, 4.0), "soil_mass": np.full(n, 15.9), "grains": np.full(n, 6e-3), "rho": rho}
+    inside = rng.uniform(0.5, 0.7, n)  # share of grains by the soil's own density, whatever its neighbours are
+    rest = {
+        "inside": inside,
+        "mass": np.full(n, 4.0),
+        "soil_mass": np.full(n, 15.9),
+        "grains": np.full(n, 6e-3),
+        "rho": rho,
+    }
     return (
         {"x": x, "soil_x": soil_x, "rows": (pairs.start, pairs.partner, weight), "p": rng.normal(size=n)}
         | values
@@ -83,7 +92,11 @@ def anew(place):
 def blended(place, k=1e-3):
     """Record and pores after `gather_soil` and `mix_fluxes`, which make the water's weights."""
     n, rows, shown = len(place["x"]), anew(place), np.zeros((len(place["soil_x"]), 8))
-    show_soil.py_func(place["soil_x"], place["soil_v"], place["soil_mass"], place["grains"], place["grains"] / k, shown)
+    grains = place["grains"]
+    show_soil.py_func(
+        place["soil_x"], place["soil_v"], place["soil_mass"], 2650.0 * place["inside"], 2650.0, grains, grains / k,
+        shown,
+    )  # fmt: skip
     record = np.zeros((n, 8))
     record[:, [X, Y]], record[:, [VX, VY]] = place["x"], place["v"]
     record[:, RHO], record[:, P], record[:, VOLUME] = place["rho"], place["p"], place["mass"] / place["rho"]
@@ -154,7 +167,8 @@ def test_drag_is_exact_in_time_and_opposite_whatever_the_step(place, seconds):
     psi = slow.shares(place["x"], place["soil_x"], place["grains"], H, PERIOD)
     exact_v, exact_soil_v = slow.drag(
         place["v"], place["a"], place["mass"], place["rho"], pores[POROSITY, : len(v)], place["soil_v"],
-        place["soil_a"], place["soil_mass"], psi, place["grains"], 1e-3, POROUS, Resistance(POROUS).gravity, seconds,
+        place["soil_a"], place["soil_mass"], psi, place["grains"], place["inside"], 1e-3, POROUS,
+        Resistance(POROUS).gravity, seconds,
     )  # fmt: skip
     largest = np.abs(exact_v).max() + seconds
     np.testing.assert_allclose(v, exact_v, atol=1e4 * eps * largest)
@@ -176,6 +190,43 @@ def test_drag_that_is_not_given_to_the_soil_loses_momentum(place):  # the twin t
     _, pores = blended(place)
     v, _, _, _ = braked(place, 1e-3, pores)
     assert np.abs((place["mass"][:, None] * (v - place["v"])).sum(axis=0)).max() > 1.0
+
+
+def rows_over_ground(ratio, rows=12):
+    """χ of rows of water that go on above ground of as many rows of a square lattice, the lowest first."""
+    h, wide = ratio, np.arange(-6, 7)
+    height = np.arange(rows) + 0.5
+    return np.array(
+        [
+            sum(kernel_value.py_func(CUBIC, np.hypot(along, y - soil) / h, h) for along in wide for soil in height)
+            for y in np.arange(0.5, rows + 2)
+        ]
+    )
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.3, 2.0])
+def test_the_surface_of_ground_resists_what_crosses_it_as_much_as_it_should(ratio):
+    rows = 12
+    chi = rows_over_ground(ratio, rows)[rows // 2 :]  # from the middle of the ground
+    resists = np.array([it * sharpened.py_func(it) for it in chi[chi > 0.0]])
+    # Sums of the cubic spline over a square lattice are 1 to 0.0039 at 1 spacing, 0.0011 at 1.3: so is each row.
+    assert resists.sum() == pytest.approx(rows / 2, abs=rows / 2 * 0.004)
+    # One that is not antisymmetric, the twin that must fail: what is left of χ where it is more than 0.8.
+    assert abs(chi[chi > 0.8].sum() - rows / 2) > 0.1
+
+
+def test_water_over_ground_is_not_held_by_it():
+    above = rows_over_ground(1.3)[12:]
+    assert above[1] > 0.009  # its second row: by this share of a drag that takes 1/5000 s it would be held
+    assert sharpened.py_func(above[1]) == 0.0
+    assert above[0] * sharpened.py_func(above[0]) < 0.07  # the first, half a spacing over the surface
+
+
+def test_dilute_soil_drags_as_its_own_density_says():
+    chi = 1.0  # of soil twice as dilute, whose particles take up twice the volume, no less
+    assert sharpened.py_func(chi) == 1.0
+    assert sharpened.py_func(0.5) == pytest.approx(1.0)  # at a surface: half of the grains, half of the drag
+    assert sharpened.py_func(0.19) == 0.0
 
 
 def test_relaxation_is_exact_for_the_shortest_and_the_longest_times():
@@ -201,9 +252,10 @@ def test_resistance_is_that_of_the_permeability_at_hand(law):
 
 @pytest.mark.parametrize("law", ["constant", "kozeny-carman"])
 def test_drag_is_finite_where_grains_only_just_reach_the_water(law):
-    """So little of them that n rounds to 1, as before a surface of the soil; by Kozeny & Carman that was 0/0."""
+    """So little of them that n rounds to 1, as before a surface of the soil."""
     pores, given = np.ones((LINES, 1 + LANES)), Resistance(POROUS, law)
     pores[DENSITY], pores[WEIGHT], pores[MASSES], pores[RESISTING] = 1000.0, 1000.0 * GRAVITY, 1e-14, 1e-15
+    pores[SOIL] = 1e-17
     v, push, heat = np.zeros((1, 2)), np.zeros((1, 2)), np.zeros(1)
     apply_drag.py_func(1, pores, v, given.number, given.factor, 1e-3, np.zeros((4, 1 + LANES)), push, heat)
     assert np.isfinite([*v[0], *push[0], heat[0]]).all()

@@ -42,8 +42,11 @@ def mixture(x, v, mass, rho, p, soil_v, psi, h, period):
     return n, -rho / n * divergence, n[:, None] * f / mass[:, None], psi.T @ f
 
 
-def drag(v, acceleration, mass, rho, n, soil_v, soil_acceleration, soil_mass, psi, grains, k, n0, gravity, seconds):
-    """Velocities of both layers after the drag of ``seconds``, one water particle after another, constant k."""
+def drag(
+    v, acceleration, mass, rho, n, soil_v, soil_acceleration, soil_mass, psi, grains, inside, k, n0, gravity, seconds
+):
+    """Velocities of both layers after the drag of ``seconds``, one water particle after another, constant k;
+    inside: share of grains of each soil particle by its own density."""
     v, soil_new = v.copy(), soil_v.copy()
     for i in range(len(v)):
         share = psi[i] / k
@@ -51,7 +54,11 @@ def drag(v, acceleration, mass, rho, n, soil_v, soil_acceleration, soil_mass, ps
         if resist == 0.0:
             continue
         volume = mass[i] / (n[i] * rho[i])
-        beta = rho[i] * gravity * n[i] ** 2 * resist / (1.0 - n0)
+        chi = (psi[i] / inside).sum()
+        sharp = min(1.0, max(0.0, (chi - 0.2) / 0.6)) / chi
+        if sharp == 0.0:
+            continue
+        beta = rho[i] * gravity * n[i] ** 2 * resist * sharp / (1.0 - n0)
         soil_density = (psi[i] / grains * soil_mass).sum()
         w = v[i] - share @ soil_v / resist
         a = acceleration[i] - share @ soil_acceleration / resist
