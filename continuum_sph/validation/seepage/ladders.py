@@ -36,7 +36,7 @@ for which, (name, title, order) in enumerate((
     ("seepage.flow_under_a_sheet_pile", "Relative error of the discharge under a pile to half of the depth",
      "what the foot of the pile leaves is a share of a spacing: first order, in one sign or the other"),
     ("seepage.exit_gradient_at_a_sheet_pile", "Relative error of the exit gradient there",
-     "no order is expected: within 1.5 % at any spacing, as which rows the fit takes hangs on it"),
+     "no order is expected, as which rows the fit takes hangs on the spacing"),
 )):  # fmt: skip
     LADDERS.ladder(name, title=title, along="particles over the depth", levels=(12, 16, 24), because=order)(
         partial(pile_error, which, 0.5)

@@ -222,11 +222,11 @@ def test_water_over_ground_is_not_held_by_it():
     assert above[0] * sharpened.py_func(above[0]) < 0.07  # the first, half a spacing over the surface
 
 
-def test_dilute_soil_drags_as_its_own_density_says():
-    chi = 1.0  # of soil twice as dilute, whose particles take up twice the volume, no less
-    assert sharpened.py_func(chi) == 1.0
-    assert sharpened.py_func(0.5) == pytest.approx(1.0)  # at a surface: half of the grains, half of the drag
+def test_drag_is_whole_inside_and_half_at_a_surface():
+    assert sharpened.py_func(1.0) == 1.0
+    assert 0.5 * sharpened.py_func(0.5) == pytest.approx(0.5)
     assert sharpened.py_func(0.19) == 0.0
+    assert 0.9 * sharpened.py_func(0.9) == pytest.approx(1.0)  # what neighbours are not there is made up for
 
 
 def test_relaxation_is_exact_for_the_shortest_and_the_longest_times():
