@@ -190,8 +190,9 @@ def sliding_row() -> Measured:
 @VALIDATIONS.row(
     "continuum.levee_stands_by_suction",
     source="Maeda & Sakai 2004, fig. 15: it is the rise that fails it; slices give a factor of 1.2 at the low river",
-    because="γ H/M = 0.03: what its weight strains it by as the brake is let go",
-    tolerance=0.03,
+    because="a slope of 1 : 2 is at its limit without suction, and its toe, which seepage leaves there, moves by 0.026 "
+    "in these 2 s: a third of that",
+    tolerance=0.0087,
     slow=True,
 )
 def standing_row() -> Measured:
