@@ -58,11 +58,12 @@ def test_error_of_the_modulus_falls_with_resolution():
 
 @pytest.mark.slow
 def test_water_that_does_not_feel_the_grains_flows_too_fast(monkeypatch):
-    # A layer of full density has the conductivity k/n and more: its drag is that of pores without grains.
+    # A layer of full density under the printed drag has the conductivity k/n.
     monkeypatch.setattr(pores, "mix_fluxes", lambda *_: None)
     monkeypatch.setattr(pores, "share_forces", lambda *_: None)
+    monkeypatch.setattr(Resistance, "factor", LAYER.porosity / (1.0 - LAYER.porosity))
     found = permeameter.darcy.__wrapped__(1e-3, steps=400)
-    assert abs(found - 1.0) > tolerance("continuum.permeameter")
+    assert found - 1.0 > 10.0 * tolerance("continuum.permeameter")
 
 
 @pytest.mark.slow
@@ -83,6 +84,7 @@ def test_drag_in_explicit_steps_makes_energy_out_of_nothing(monkeypatch):
     # 1 - e^(-κT) → κT: unstable for T beyond 2/κ.
     monkeypatch.setattr(exchange, "relaxation", lambda times: times)
     monkeypatch.setattr(exchange, "drag", exchange.drag.py_func)
+    monkeypatch.setattr(exchange, "sharpened", exchange.sharpened.py_func)
     monkeypatch.setattr(pores, "apply_drag", exchange.apply_drag.py_func)
     with pytest.raises(ValueError, match="position"):
         saturated_box.growth_of_energy.__wrapped__(1e-7)
