@@ -9,7 +9,8 @@ from tests.reference.continuum import continuum_cases
 from tests.reference.continuum.continuum_cases import missed
 from tests.validation.tolerances import ROWS, tolerance
 
-STEEP = "soil.body=[{outline=[[0,0],[2.2,0],[2.2,0.2],[1.224,0.2],[0.3,0.8],[0,0.8]]}]"  # 33 degrees
+STEEP = "soil.body=[{outline=[[0,0],[2.2,0],[2.2,0.2],[1.0,0.2],[0.3,0.8],[0,0.8]]}]"
+"""41 degrees: it moves by a third of a metre in two seconds.  One of 33, 12 rows high, creeps by 0.3 mm."""
 
 
 def test_limits_of_wet_slopes_are_those_of_the_textbook():
