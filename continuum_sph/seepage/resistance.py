@@ -8,9 +8,10 @@ k is given at the porosity n0 of each soil: its water takes R = Σ_s ψ_is/k_s f
 
 (Kozeny 1927, Carman 1937).  The first is that of k for n = n0 and of k (1 - n0)/(1 - n) else.
 
-Kernels smear the surface of soil over 1.5 spacings to both sides, and drag is stiff: a hundredth of that inside stops
-open water within tenths of a second, so water would stand as a cliff where it should run over ground.  So R is
-sharpened: with χ = Σ_s ψ_is/(1 - n_s), 1 inside and a half at a surface, n_s the porosity of soil s by its own density,
+Kernels smear the surface of soil over 1.5 spacings to both sides, and drag is stiff: a hundredth of that inside,
+0.01 n g/k, stops open water within 0.13 s at k = 5 mm/s, and it stands as a cliff where it should run over ground.  So
+R is sharpened: with χ = Σ_s ψ_is/(1 - n_s), 1 inside and a half at a surface, n_s the porosity of soil s by its own
+density,
 
     R → R s(χ)/χ,   s = 0 for χ <= 1/5, 1 for χ >= 4/5, linear between.
 
@@ -32,7 +33,7 @@ EDGE = 0.2, 0.8
 
 @inline
 def sharpened(chi):
-    """s(χ)/χ."""
+    """s(χ)/χ, what sharpening makes of R where soil takes up the share ``chi`` > 0 of the volume."""
     return minimum(maximum((chi - EDGE[0]) * (1.0 / (EDGE[1] - EDGE[0])), 0.0), 1.0) / chi
 
 

@@ -52,11 +52,15 @@ def exit_gradient(share: float) -> float:
     return float(np.pi / (4.0 * ellipk(m) * m**0.5))
 
 
+def slab(share: float, rows: float) -> float:
+    """How much longer than itself a slab one spacing thick is for the flow, in spacings, ε;  ``share`` = s/T;  rows :
+    T over the spacing."""
+    return float((1.0 + np.log(8.0 * rows * np.sin(np.pi * share))) / (2.0 * np.pi))
+
+
 def longer(share: float, rows: float) -> float:
-    """How much longer than itself a slab one spacing thick is for the flow, in spacings, kernels' part included;
-    ``share`` = s/T;  rows : T over the spacing."""
-    slab = (1.0 + np.log(8.0 * rows * np.sin(np.pi * share))) / (2.0 * np.pi)
-    return float(slab + ROUNDED[0] - ROUNDED[1] * share)
+    """How much longer such a slab is with what kernels round off, in spacings;  as in `slab`."""
+    return slab(share, rows) + ROUNDED[0] - ROUNDED[1] * share
 
 
 def shorter(share: float) -> float:

@@ -67,15 +67,15 @@ def stirred_water() -> Measured:
     return Measured.absolute([0.0, 0.0], [stirred(spacing)[0] for spacing in (0.05, 0.025)])
 
 
-SIDE, VISCOUS = 0.4, 3e-3  # m, of a square column of water; its kinematic viscosity, m²/s
-GROUND_ROWS = 6
+SIDE, VISCOSITY = 0.4, 3.0  # m, of a square column of water; Pa s: 0.003 m²/s
+GROUND_ROWS = 6  # under it, more than kernels reach
 TIMES = (0.2, 0.8)  # s, between which the front is followed: by then it is four columns away
 AHEAD = 0.9  # share of the water over the bed that its front has behind it
 FRONT_ROWS = (12, 24, 48)
 
 
 @functools.cache
-def front_speed(rows: int, bed: str = "ground", permeability: float = 1e-3) -> float:
+def front_speed(rows: int, bed: str = "ground") -> float:
     """Speed (m/s) of the front of a viscous column of water, ``rows`` high, that is let go over a ``bed``: "ground"
     that is held and full of water, or a floor that it is to "stick" to or to "slip" on.
 
@@ -89,12 +89,12 @@ def front_speed(rows: int, bed: str = "ground", permeability: float = 1e-3) -> f
         "numerics": {"spacing": spacing},
         "time": {"end": TIMES[1]},
         "output": {"snapshot_interval": TIMES[1], "series_interval": TIMES[1]},
-        "water": {"viscosity": 1000.0 * VISCOUS, "column": [column]},
+        "water": {"viscosity": VISCOSITY, "column": [column]},
     }
     if bed == "ground":
         outline = [[0.0, 0.0], [width, 0.0], [width, floor], [0.0, floor]]
         table["soil"] = {
-            "stiffness": 2e6, "friction_angle": "30 degree", "held": True, "permeability": permeability,
+            "stiffness": 2e6, "friction_angle": "30 degree", "held": True, "permeability": 1e-3,
             "body": [{"outline": outline}],
         }  # fmt: skip
         table["water"]["column"] = [{"width": width, "height": floor}, column]

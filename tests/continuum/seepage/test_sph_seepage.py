@@ -217,7 +217,7 @@ def test_the_surface_of_ground_resists_what_crosses_it_as_much_as_it_should(rati
 
 def test_water_over_ground_is_not_held_by_it():
     above = rows_over_ground(1.3)[12:]
-    assert above[1] > 0.009  # its second row: by this share of a drag that takes 1/5000 s it would be held
+    assert above[1] > 0.009  # its second row: by this share of n g/k = 3900 1/s, at 1 mm/s, it would be held
     assert sharpened.py_func(above[1]) == 0.0
     assert above[0] * sharpened.py_func(above[0]) < 0.07  # the first, half a spacing over the surface
 

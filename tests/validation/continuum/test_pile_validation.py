@@ -80,7 +80,7 @@ def test_a_slab_is_longer_than_itself_by_what_is_derived(share):
     # sheet to within 0.02 spacings, of which 0.01 are of cells; ground without ends in place of ground that ends at 1 T
     # is worth ln(0.64/0.49)/2π = 0.04 at s/T = 0.5.
     rows, finer = 20, 6
-    longer = sheet_flow.longer(share, rows) - (sheet_flow.ROUNDED[0] - sheet_flow.ROUNDED[1] * share)
+    longer = sheet_flow.slab(share, rows)
     found = [thick(share, rows, 1.0, finer, short)[0] for short in (finer * 2 // 3, finer, finer * 4 // 3)]
     sheet = SheetPile(share).discharge
     at = float(np.interp(sheet, found, [2.0 / 3.0, 1.0, 4.0 / 3.0]))
