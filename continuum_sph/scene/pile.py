@@ -34,7 +34,7 @@ class SheetPileSection(Section):
         if not 4.0 * spacing < self.column(spacing) < width - 4.0 * spacing:
             found.append(Fault("pile.x", self.x, "leaves fewer than 4 particles beside it", "m",
                                f"{4.5 * spacing:g} to {width - 4.5 * spacing:g}"))  # fmt: skip
-        if self.lower_end(spacing) > height - 4.0 * spacing:
+        if self.lower_end(spacing) > height - 2.0 * spacing:
             found.append(Fault("pile.tip", self.tip, "leaves nothing of it in the tank", "m",
-                               f"<= {height - 5.0 * spacing:g}"))  # fmt: skip
+                               f"<= {height - 3.0 * spacing:g}"))  # fmt: skip
         return found

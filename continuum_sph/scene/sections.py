@@ -8,6 +8,7 @@ import pydantic
 
 from continuum_sph.scene.air import AirSection
 from continuum_sph.scene.bounds import MOST, WEAKEST, WHOLE, spacings
+from continuum_sph.scene.face import FaceSection, face_faults
 from continuum_sph.scene.inclusion import InclusionSection
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.scene.material_file import with_material
@@ -42,6 +43,7 @@ class Scene(SceneBase):
     inclusion: InclusionSection | None = None
     pile: SheetPileSection | None = None
     reservoir: tuple[ReservoirSection, ...] = ()
+    face: tuple[FaceSection, ...] = ()
     probe: tuple[ProbeSection, ...] = ()
     level: tuple[LevelSection, ...] = ()
     numerics: NumericsSection
@@ -58,7 +60,8 @@ class Scene(SceneBase):
     def head(self) -> float:
         """Height of the highest water above the floor, m."""
         tops = [column.bottom + column.height for column in self.water.column]
-        return max([*tops, *(it.highest for it in self.reservoir)], default=0.0)
+        heads = [*(it.highest for it in self.reservoir), *(it.head for it in self.face)]
+        return max([*tops, *heads], default=0.0)
 
     @property
     def fall_speed(self) -> float:
@@ -80,7 +83,7 @@ class Scene(SceneBase):
     @property
     def dry(self) -> bool:
         """Whether there is soil and no water, now or later."""
-        return self.soil is not None and not (self.water.column or self.reservoir)
+        return self.soil is not None and not (self.water.column or self.reservoir or self.face)
 
     @property
     def inner(self) -> tuple[float, float]:
@@ -101,6 +104,9 @@ class Scene(SceneBase):
             faults += section.faults(f"reservoir[{index}]", *self.inner, spacing)
         if self.soil is not None:
             faults += self._wet_soil(self.soil)
+        faults += face_faults(self.face, self.soil, tank.lid, self.inner, spacing)
+        if self.face and self.gravity == 0.0:
+            faults.append(Fault("face", "given", "has a head, which needs gravity", repair="raise gravity"))
         if self.pile is not None:
             faults += self.pile.faults(*self.inner, spacing)
             if self.soil is None:
@@ -178,9 +184,11 @@ class Scene(SceneBase):
         for key, there in (("held", soil.held), ("water_table", soil.water_table is not None)):
             if there and self.dry:
                 faults.append(Fault(f"soil.{key}", there, "is of soil with water, of which there is none",
-                                    repair="add [[water.column]] or [[reservoir]]"))  # fmt: skip
+                                    repair="add [[water.column]], [[reservoir]] or [[face]]"))  # fmt: skip
             if there and soil.suction is not None:
                 faults.append(Fault(f"soil.{key}", there, "cannot be with soil.suction", repair="take out one of them"))
+        if self.face and soil.suction is not None:
+            faults.append(Fault("face", "given", "cannot be with soil.suction", repair="take out one of them"))
         for key, there in (("soil.saturated", soil.saturated), ("air", self.air is not None)):
             if there and soil.water_table is not None:
                 faults.append(Fault("soil.water_table", soil.water_table, f"cannot be with {key}", "m",

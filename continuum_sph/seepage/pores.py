@@ -59,7 +59,7 @@ class PoreFlow(Flow):
         """Begin a step as a flow of water alone does; particles behind open faces are moved with it."""
         layer, near = self.layer, self.near(self.law.smoothing.kind)
         for face in self.drains:
-            follow(face.rows, near, layer.x, layer.v, *face.normal, step)
+            follow(face.rows, near, layer.x, layer.v, layer.acceleration, *face.normal, step)
         return super().begin(step)
 
     def evaluate(self, step: float, ratio: float) -> None:

@@ -10,6 +10,7 @@ strip falls to one half, w the cubic spline on a line.  A drop of one particle i
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.water.step import Flow
@@ -17,6 +18,7 @@ from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
 
 SUPPORT = 2.0  # of the kernels, in smoothing lengths
+OPEN = 0.9  # share of a particle's volume that is water; soil about it has a tenth of it, or less
 THIN = 1e-3  # of a mean square distance: particles on a line give no slope across it
 
 
@@ -55,14 +57,20 @@ def interpolate(at: tuple[float, float], cloud: MeasuredWater) -> Floats:
     return value
 
 
-def surface_height(level: LevelSection, cloud: MeasuredWater) -> float:
-    """Height (m) of the free surface in the strip of ``level``; 0 where there is no water."""
+def strip(level: LevelSection, cloud: MeasuredWater) -> tuple[NDArray[np.bool_], float]:
+    """Which particles (n,) lie in the strip of ``level``, and its breadth within the tank, m."""
     half = 0.5 * (level.breadth if level.breadth is not None else 4.0 * cloud.spacing)
     left, right = max(0.0, level.x - half), min(cloud.width, level.x + half)
-    inside = (cloud.x[:, 0] >= left) & (cloud.x[:, 0] <= right)
-    if not inside.any() or right <= left:
+    inside: NDArray[np.bool_] = (cloud.x[:, 0] >= left) & (cloud.x[:, 0] <= right)
+    return inside, right - left
+
+
+def surface_height(level: LevelSection, cloud: MeasuredWater) -> float:
+    """Height (m) of the free surface in the strip of ``level``; 0 where there is no water."""
+    inside, breadth = strip(level, cloud)
+    if not inside.any() or breadth <= 0.0:
         return 0.0
-    y, share = cloud.x[inside, 1], cloud.volume[inside] / (right - left)
+    y, share = cloud.x[inside, 1], cloud.volume[inside] / breadth
     h = cloud.length
     heights = np.arange(max(0.0, float(y.min())), float(y.max()) + SUPPORT * h + cloud.spacing, 0.1 * cloud.spacing)
     q = np.abs(heights[:, None] - y) / h
@@ -78,10 +86,17 @@ def surface_height(level: LevelSection, cloud: MeasuredWater) -> float:
 def discharge(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float:
     """Flow of water to the right (m²/s) through a section: Σ V_i s_i u_i/breadth over the strip of ``level``;
     ``share`` (n,): s, of each particle's volume that is water."""
-    half = 0.5 * (level.breadth if level.breadth is not None else 4.0 * cloud.spacing)
-    left, right = max(0.0, level.x - half), min(cloud.width, level.x + half)
-    inside = (cloud.x[:, 0] >= left) & (cloud.x[:, 0] <= right)
-    return float((cloud.volume * share * cloud.v[:, 0])[inside].sum()) / (right - left) if right > left else 0.0
+    inside, breadth = strip(level, cloud)
+    return float((cloud.volume * share * cloud.v[:, 0])[inside].sum()) / breadth if breadth > 0.0 else 0.0
+
+
+def open_depth(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float:
+    """Depth (m) of the water in the strip of ``level`` that lies in no soil: its volume over the breadth.
+
+    share (n,): of each particle's volume that is water, as smoothed; soil counts where it is less than `OPEN`.
+    """
+    inside, breadth = strip(level, cloud)
+    return float(cloud.volume[inside & (share > OPEN)].sum()) / breadth if breadth > 0.0 else 0.0
 
 
 def mean_row(name: str, probe: ProbeSection, cloud: MeasuredWater, water: Floats) -> dict[str, float]:

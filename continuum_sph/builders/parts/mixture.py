@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.parts.air import AIR as GAS
 from continuum_sph.builders.parts.air import AirPart
+from continuum_sph.builders.parts.faces import FacePart
 from continuum_sph.builders.parts.held_soil import HeldSoilPart
-from continuum_sph.builders.parts.instruments import MeasuredWater, discharge, level_row, probe_row
+from continuum_sph.builders.parts.instruments import MeasuredWater, discharge, level_row, open_depth, probe_row
 from continuum_sph.builders.parts.phreatic import NAME, phreatic_row
 from continuum_sph.builders.parts.pore_water import seepage_flow
 from continuum_sph.builders.parts.reservoirs import ReservoirPart
@@ -159,6 +160,7 @@ class PoreInstruments(Part):
         """A row of each table of the instruments.
 
         NAME discharge (m2/s) : flow of water to the right through the section of the level
+        NAME open depth (m) : depth of the water in the strip of the level that lies in no soil
         """
         flow, layer, law, n = self.flow, self.flow.layer, self.flow.law, self.flow.layer.fluid
         there = (layer.mass[:n] > 0.0) & (layer.material[:n] != GAS)
@@ -175,7 +177,9 @@ class PoreInstruments(Part):
         found[NAME] = phreatic_row(cloud)
         for number, level in enumerate(self.levels):
             through = discharge(level, cloud, flow.porosity[there])
-            found["levels"][f"{level.name or f'level {number}'} discharge (m2/s)"] = through
+            name = level.name or f"level {number}"
+            found["levels"][f"{name} discharge (m2/s)"] = through
+            found["levels"][f"{name} open depth (m)"] = open_depth(level, cloud, flow.porosity[there])
         return found
 
 
@@ -200,9 +204,11 @@ def assemble(scene: Scene) -> Assembly:
     parts: list[Part] = [water, soil, mixture]
     if both.supply:
         parts.append(ReservoirPart(both.supply, both, scene.tank.height))
+    if scene.face:
+        parts.append(FacePart(scene.face, both.water, scene.numerics.spacing))
     if scene.pile and scene.gravity > 0.0:
         pile = sheet_pile(scene.pile, scene.numerics.spacing)
-        parts.append(ExitGradientPart(pile, both.water, scene.water.density * scene.gravity))
+        parts.append(ExitGradientPart(pile, both.water, scene.water.density * scene.gravity, scene.face))
     parts.append(PoreInstruments(scene, both.water))
     if scene.air:
         parts.append(AirPart(both.water))

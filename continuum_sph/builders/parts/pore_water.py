@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
+from continuum_sph.builders.parts.faces import drain
 from continuum_sph.builders.parts.held_soil import held_ground
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
@@ -144,12 +145,14 @@ def seepage_flow(scene: Scene) -> Seepage:
         layer, law, pairs, skeleton=skeleton, overlap=overlap,
         resistance=Resistance(section.porosity, section.permeability_law),
     )  # fmt: skip
+    size, weight = (width, height), scene.water.density * scene.gravity
+    flow.drains += [drain(it, walls[: len(walls) - len(side)], len(x), size, weight) for it in scene.face]
     if scene.air:
         flow.specific_weight = specific_weights(layer.material[: len(x)], law, flow.resistance.gravity)
     flow.lower[:] = 0.0
     flow.upper[:] = width, height if scene.tank.lid and not waiting else np.inf
-    weight = section.porosity * scene.water.density + section.density if not section.held else np.inf
-    both = Seepage(flow, ground, largest_modulus(scene), weight)
+    whole = section.porosity * scene.water.density + section.density if not section.held else np.inf
+    both = Seepage(flow, ground, largest_modulus(scene), whole)
     both.start()
     layer.mass[:present] = (flow.porosity * rho * area)[:present]
     if waiting:

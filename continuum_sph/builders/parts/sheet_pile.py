@@ -11,9 +11,12 @@ soil there has lost its weight at i = i_c.  With fewer than LEAST rows beside th
 between the surface, where kernels round off the bend of the head, and the tip: no number then.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.scene.face import FaceSection
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.soil import SoilSection
 from continuum_sph.seepage import PoreFlow
@@ -43,10 +46,11 @@ def ground_at(section: SoilSection, x: float) -> float:
 
 
 class ExitGradientPart(Part):
-    """The exit gradient beside a ``pile`` in a ``flow`` of water whose weight is ρ g (N/m³) > 0."""
+    """The exit gradient beside a ``pile`` in a ``flow`` of water whose weight is ρ g (N/m³) > 0; ``faces`` of the
+    tank."""
 
-    def __init__(self, pile: Pile, flow: PoreFlow, weight: float) -> None:
-        self.pile, self.flow, self.weight = pile, flow, weight
+    def __init__(self, pile: Pile, flow: PoreFlow, weight: float, faces: Sequence[FaceSection] = ()) -> None:
+        self.pile, self.flow, self.weight, self.given = pile, flow, weight, given_heads(faces, pile.x)
 
     def row(self) -> dict[str, float]:
         """The column of the exit gradient i_E at the sheet pile.
@@ -54,7 +58,7 @@ class ExitGradientPart(Part):
         exit gradient () : hydraulic gradient upwards where water leaves the ground beside the pile; nan where fewer
             than four rows of particles lie beside it
         """
-        return {NAME: exit_gradient(self.pile, self.flow, self.weight)}
+        return {NAME: exit_gradient(self.pile, self.flow, self.weight, self.given)}
 
 
 def steepness(z: NDArray[np.complex128], head: Floats, buried: float) -> float:
@@ -71,14 +75,17 @@ def resolved(buried: float, spacing: float) -> bool:
     return buried > (LEAST - 0.5) * spacing
 
 
-def beside(pile: Pile, water: Floats, head: Floats, soil: Floats) -> float:
+def beside(
+    pile: Pile, water: Floats, head: Floats, soil: Floats, given: tuple[float | None, float | None] = (None, None)
+) -> float:
     """i_E where water rises beside a ``pile``: the larger of its two sides; no number where the ground is gone, or the
     sheet not deep enough in it.
 
-    water (n, 2) m, head (n,) m: of the water's particles, p/(ρ g) + y;  soil (s, 2) m.
+    water (n, 2) m, head (n,) m: of the water's particles, p/(ρ g) + y;  soil (s, 2) m;  given: head (m) over the ground
+    on its left and right, None: as found.
     """
     spacing, found = pile.spacing, [float("nan")]
-    for side in (-1.0, 1.0):
+    for side, known in zip((-1.0, 1.0), given, strict=True):
         away, off = side * (water[:, 0] - pile.x) / spacing - 0.5, side * (soil[:, 0] - pile.x) / spacing - 0.5
         ground = soil[(off > 0.0) & (off < WIDE), 1]
         if not ground.size:
@@ -90,14 +97,22 @@ def beside(pile: Pile, water: Floats, head: Floats, soil: Floats) -> float:
         near = (away > 0.0) & (away < WIDE) & (depth > BLURRED * spacing) & (depth < NEAR_TIP * buried)
         over = (away > 0.0) & (away < OPEN) & (depth < -BLURRED * spacing) & (depth > -OPEN * spacing)
         level = float(head[over].mean()) if over.any() else top
+        level = level if known is None else known
         steep = steepness(depth[near] + 1j * spacing * away[near], head[near] - level, buried)
         found.append(steep / thickness_at_exit(min(1.0, buried / top), top / spacing))
     return float(np.fmax.reduce(found))
 
 
-def exit_gradient(pile: Pile, flow: PoreFlow, weight: float) -> float:
-    """i_E beside a ``pile`` in the ``flow`` of water whose weight is ρ g (N/m³) > 0."""
+def exit_gradient(pile: Pile, flow: PoreFlow, weight: float, given: tuple[float | None, float | None]) -> float:
+    """i_E beside a ``pile`` in the ``flow`` of water whose weight is ρ g (N/m³) > 0;  given: as in `beside`."""
     layer, n = flow.layer, flow.layer.fluid
     there = (layer.mass[:n] > 0.0) & (layer.material[:n] == 0)
     x = layer.x[:n][there]
-    return beside(pile, x, layer.pressure[:n][there] / weight + x[:, 1], flow.skeleton.x)
+    return beside(pile, x, layer.pressure[:n][there] / weight + x[:, 1], flow.skeleton.x, given)
+
+
+def given_heads(faces: Sequence[FaceSection], x: float) -> tuple[float | None, float | None]:
+    """Heads (m) of the ``faces`` of the lid on the left and right of a pile at ``x``, m; None where there is none."""
+    left = [it.head for it in faces if it.side == "lid" and (it.start or 0.0) < x]
+    right = [it.head for it in faces if it.side == "lid" and (it.end is None or it.end > x)]
+    return left[-1] if left else None, right[0] if right else None

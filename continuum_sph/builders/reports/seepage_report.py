@@ -1,6 +1,9 @@
 """The report of `check` on a scene of soil and water before it runs."""
 
+import math
+
 from continuum_sph.builders.parts.air import air_report, dry_pores
+from continuum_sph.builders.parts.faces import FARTHEST, name_of
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law
 from continuum_sph.builders.parts.sheet_pile import LEAST, ground_at, resolved, sheet_pile
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
@@ -19,6 +22,7 @@ REACH = 1.05  # h over the distance of water's particles in pores: with less a f
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
 STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level
 STEADY = 1.4  # h over spacings from which on it does so for longer
+EARLY = 0.02  # of the time in which water passes half a spacing: pressures that spread within it are exact to 1 %
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
 
@@ -59,7 +63,9 @@ def seepage_report(scene: Scene) -> Report:
     if scene.pile:
         pile_report(scene, out)
     if scene.reservoir:
-        levels(scene, out)
+        levels(scene, out, wetted=not section.saturated and len(dry_pores(scene.water.column, soil)) > 0)
+    if scene.face:
+        faces(scene, out)
     return out
 
 
@@ -117,8 +123,11 @@ def pile_report(scene: Scene, out: Report) -> None:
         )
 
 
-def levels(scene: Scene, out: Report) -> None:
-    """Rows on prescribed levels, and warnings about what keeps water from moving into soil as it should."""
+def levels(scene: Scene, out: Report, *, wetted: bool) -> None:
+    """Rows on prescribed levels, and warnings about what keeps water from moving into soil as it should.
+
+    wetted : there are pores without water.
+    """
     numerics, porosity = scene.numerics, soil_section(scene).porosity
     out.heading("prescribed levels")
     for number, it in enumerate(scene.reservoir):
@@ -126,7 +135,7 @@ def levels(scene: Scene, out: Report) -> None:
         out.row(it.name or f"reservoir {number}", it.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
     reach = numerics.smoothing_ratio * porosity**0.5
     out.row("smoothing length over distances in pores", reach, "", f"at least {REACH:g}")
-    if reach < REACH:
+    if reach < REACH and wetted:
         out.warn(
             f"particles of water part by 1/sqrt(n) where they enter soil: kernels reach {reach:.2g} of their distance, "
             f"fronts are up to 10 % late; numerics.smoothing_ratio {REACH / porosity**0.5:.2g} mends it"
@@ -135,4 +144,35 @@ def levels(scene: Scene, out: Report) -> None:
         out.warn(
             "shifting goes by the fastest water anywhere, and crowds what rests beside it: levels and discharges are "
             "5 % low; numerics.shifting = 0 mends it"
+        )
+
+
+def faces(scene: Scene, out: Report) -> None:
+    """Rows on heads at sides of the tank, and a warning where more water passes them than there is."""
+    section, numerics, state = soil_section(scene), scene.numerics, water_state(scene)
+    out.heading("sides that water passes")
+    for number, it in enumerate(scene.face):
+        start, end = it.reach(*scene.inner)
+        out.row(name_of(it, number), it.head, "m", f"head, from {start:g} to {end:g} m along the {it.side}")
+    storage = section.porosity / (state.density * state.sound_speed**2)
+    storage += 0.0 if section.held else 1.0 / largest_modulus(scene)
+    spread = section.permeability / (state.density * scene.gravity * storage)
+    slow = max(scene.inner) ** 2 / spread
+    out.row("time in which pressures spread", slow, "s", "over the longer side of the tank; flow is steady after three")
+    heads = [it.head for it in scene.face]
+    fall = max(heads) - min(heads)
+    if fall <= 0.0:
+        return
+    seconds = FARTHEST * numerics.spacing * section.porosity * min(scene.inner) / (section.permeability * fall)
+    out.row("time in which water passes half a spacing", seconds, "s", "about; a run ends there")
+    if scene.time.end > seconds:
+        out.warn(
+            f"after some {seconds:.2g} s more water has passed a face than is there to pass it, and the run stops: "
+            f"lower time.end, or soil.permeability"
+        )
+    if slow > EARLY * seconds and section.held:
+        speed = state.sound_speed * (slow / (EARLY * seconds)) ** 0.5
+        out.warn(
+            f"flow is steady when water has passed faces by {1.5 * slow / seconds:.2g} spacings, which makes it some "
+            f"per cent too small; water.sound_speed = {math.ceil(speed):g} mends it"
         )

@@ -7,9 +7,11 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipj, ellipk, ellipkinc, ellipkm1
 
+from continuum_sph.builders.parts.faces import drain
 from continuum_sph.builders.parts.sheet_pile import beside, sheet_pile
+from continuum_sph.scene.face import FaceSection
 from continuum_sph.scene.pile import SheetPileSection
-from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage
+from continuum_sph.seepage import Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.validation.seepage.setups import WATER
@@ -35,23 +37,10 @@ DIFFUSION = 0.05
 the steps of water this stiff are too long for it."""
 
 
-@dataclass(frozen=True)
-class Face:
-    """A stretch of a rectangle's boundary with a head, m above that of the water at rest, between two places along it.
-
-    side : "left", "right", "floor" or "lid";  head m;  start, end: m along the side.
-    """
-
-    side: str
-    head: float
-    start: float = -np.inf
-    end: float = np.inf
-
-
 def held_ground(
     size: tuple[float, float],
     spacing: float,
-    faces: list[Face],
+    faces: list[FaceSection],
     permeability: float,
     pace: float = 0.3,
     pile: Pile | None = None,
@@ -86,28 +75,13 @@ def held_ground(
     )  # fmt: skip
     beside = walls[: len(walls) - len(side)]
     for face in faces:
-        flow.drains.append(_drain(face, beside, n, size))
+        flow.drains.append(drain(face, beside, n, size, WATER * GRAVITY))
+        flow.drains[-1].pressure[:] = WATER * GRAVITY * face.head
     both = Seepage(flow, frame)
     both.start()
     mass[:n] = flow.porosity * WATER * spacing**2
     both.start()
     return both
-
-
-def _drain(face: Face, walls: Floats, first: int, size: tuple[float, float]) -> Drain:
-    """The face's wall particles, those in corners left out;  first: number of the first wall particle."""
-    width, height = size
-    x, y = walls.T
-    beside = (y > 0.0) & (y < height)
-    upright = (x > 0.0) & (x < width)
-    mask, point, normal, along = {
-        "left": (beside & (x < 0.0), (0.0, 0.0), (1.0, 0.0), y),
-        "right": (beside & (x > width), (width, 0.0), (-1.0, 0.0), y),
-        "floor": (upright & (y < 0.0), (0.0, 0.0), (0.0, 1.0), x),
-        "lid": (upright & (y > height), (0.0, height), (0.0, -1.0), x),
-    }[face.side]
-    rows = first + np.flatnonzero(mask & (along > face.start) & (along < face.end))
-    return Drain(rows, point, normal, np.full(len(rows), WATER * GRAVITY * face.head))
 
 
 def flux(both: Seepage) -> tuple[Floats, Floats, Floats]:
@@ -184,7 +158,10 @@ class SheetPile:
         width = (2 * round(self.reach * self.rows) + 1) * spacing
         left, right = 0.5 * (width - spacing), 0.5 * (width + spacing)
         pile = sheet_pile(SheetPileSection(x=0.5 * width, tip=1.0 - self.share), spacing)
-        faces = [Face("lid", 1.0, end=left), Face("lid", 0.0, start=right)]
+        faces = [
+            FaceSection(name="", side="lid", head=1.0, end=left),
+            FaceSection(name="", side="lid", head=0.0, start=right),
+        ]
         both = held_ground((width, 1.0), spacing, faces, k, pile=pile)
         for _ in range(steps):
             both.advance()
