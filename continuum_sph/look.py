@@ -24,7 +24,7 @@ TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 
 def is_dry(scene: Mapping[str, Any]) -> bool:
     """Whether a scene with soil, as on a run card, is without water."""
-    return not (scene["water"]["column"] or scene.get("reservoir"))
+    return not (scene["water"]["column"] or scene.get("reservoir") or scene.get("face"))
 
 
 def look_of_scene(
@@ -38,12 +38,17 @@ def look_of_scene(
     corners = [(0.0, height), (0.0, 0.0), (width, 0.0), (width, height)]
     if scene["tank"]["lid"]:
         corners.append(corners[0])
+    lines = list(pairwise(corners))
+    if pile := scene.get("pile"):
+        lines.append(((pile["x"], pile["tip"]), (pile["x"], height)))
     margin = 0.02 * width
     more: dict[str, Any] = {"colour": "velocity"}
     if scene["soil"] and scene["soil"].get("suction"):
         more = {"colour": "saturation"}
     elif scene["soil"] and is_dry(scene):
         more = {"colour": "displacement"}
+    elif scene.get("face") and scene["soil"]["held"]:
+        more = {"colour": "head"}
     elif scene["soil"]:
         kinds = LAYERS | (AIR if scene.get("air") else {}) | (LINE if surface else {})
         more = {"colour": "layer", "kinds": kinds, "marks": surface}
@@ -52,7 +57,7 @@ def look_of_scene(
     look = Look(
         title=scene["title"] or name,
         cloud="particles",
-        lines=list(pairwise(corners)),
+        lines=lines,
         dot=0.5 * scene["numerics"]["spacing"],
         view=(-margin, width + margin, -margin, height + margin),
         density=scene["water"]["density"],

@@ -48,7 +48,10 @@ SCENES: dict[str, tuple[str, int, str | None, tuple[str, ...]]] = {
     "micro_to_macro/bed.toml": (GRAINS, 60, "draft", ()),
     "micro_to_macro/column.toml": (GRAINS, 400, None, ()),
     "micro_to_macro/ground.toml": (CONTINUUM, 200, None, ()),
-    "rectangular_dam/dam.toml": (CONTINUUM, 150, None, ()),
+    "rectangular_dam/scene.toml": (CONTINUUM, 150, None, ()),
+    "saturated_levee/scene.toml": (CONTINUUM, 60, "draft", ()),
+    "sheet_pile/scene.toml": (CONTINUUM, 100, None, ()),
+    "sheet_pile_failure/scene.toml": (CONTINUUM, 60, "draft", ()),
 }  # fmt: skip
 """Scene: package, steps, quality, settings that make it smaller."""
 
@@ -60,8 +63,8 @@ SCRIPTS: dict[str, Script] = {
         "clump": 3000, "consolidation": 100, "demseg_chain": 2000, "demseg_clump": 2000, "demseg_control": 2000,
         "demseg_disc": 2000, "demseg_repose": 10_000, "demseg_segment": 2000, "demseg_triangle": 2000,
         "dry_column_collapse": 10_000, "dry_levee": 60, "grain_size": 10_000, "hanging_chain": 2000, "imbibition": 60,
-        "liquid_columns": 200, "micro_to_macro": 50, "oscillating_drop": 60, "rectangular_dam": 60, "rock": 15_000,
-        "rolling_on_a_slope": 2000, "saturated_levee": 40, "sheet_pile": 40, "sheet_pile_failure": 40,
+        "liquid_columns": 200, "micro_to_macro": 50, "oscillating_drop": 60, "rock": 15_000,
+        "rolling_on_a_slope": 2000, 
         "simple_shear": 15_000, "soil_stress_noise": 150, "sph_corrections": 100, "step_stability": 300,
         "tumbling_plate": 60, "turned_stressed_block": 150, "upward_flow": 60,
     }.items()

@@ -120,6 +120,9 @@ class MixturePart(Part):
         data = {name: np.concatenate(values) for name, *values in parts}
         units = {"velocity": "m/s", "pressure": "Pa"}
         whole = Cloud(np.concatenate((water.position, air.position, soil.position)), data, units)
+        weight = -self.flow.water.law.state.density * self.flow.water.law.gravity[1]
+        if self.soil.pressure == HeldSoilPart.pressure and weight > 0.0 and not self.air:
+            data["head"], units["head"] = data["pressure"] / weight + whole.position[:, 1], "m"
         return {"particles": whole, "water": water, "soil": soil} | ({"air": air} if self.air else {})
 
     def cloud(self) -> Cloud:
@@ -128,7 +131,8 @@ class MixturePart(Part):
 
     def show(self, snapshot: Snapshot) -> None:
         """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
-        pressure (of soil mean effective stress, of soil that is held that of its water), porosity."""
+        pressure (of soil mean effective stress, of soil that is held that of its water), porosity, and in ground that is
+        held and without air the head of the water."""
         snapshot.clouds |= self._clouds()
 
     def state(self) -> dict[str, Any]:

@@ -68,6 +68,8 @@ def load_now() -> float:
 
     It shares the cores with as many processes as wanted one in the last minute.
     """
-    if not hasattr(os, "getloadavg"):
+    try:
+        wanted = os.getloadavg()[0] + 1.0
+    except (AttributeError, OSError):
         return 1.0
-    return max(1.0, (os.getloadavg()[0] + 1.0) / cores())
+    return max(1.0, wanted / cores())

@@ -10,7 +10,7 @@ at : "end", "max", "min", a time in s (interpolated), or a table with first_belo
 minus : another column to take away;  where : {column: value} of the rows to look at, at the table's last time.
 """
 
-import math
+import sys
 from collections.abc import Callable, Mapping
 from fnmatch import fnmatchcase
 from typing import Any
@@ -125,7 +125,8 @@ def wrong(row: Mapping[str, Any]) -> str:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    # A whole number may be too large for a float, which isfinite does not bear.
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def curve(columns: Columns, row: Mapping[str, Any]) -> tuple[NDArray[Any], NDArray[Any]]:

@@ -49,11 +49,11 @@ def steady(given, seconds=0.3):
 
 
 @pytest.mark.parametrize(
-    "one, other, along, across", [("left", "right", WIDE, HIGH), ("floor", "lid", HIGH, WIDE)]
+    ("one", "other", "along", "across"), [("left", "right", WIDE, HIGH), ("floor", "lid", HIGH, WIDE)]
 )  # fmt: skip
 def test_flow_between_two_sides_is_darcys(one, other, along, across):
     """A linear head is exact for the faces and for corrected gradients; rows beside them know where they stand to a
-    twentieth of a spacing, two of which are 1 % of eight to ten rows.  It lasts: particles behind the faces drift as the
+    twentieth of a spacing, two of which are 1.25 % of eight rows.  It lasts: particles behind the faces drift as the
     water does (with its velocity at the start of a step flow falls by 3 % a second, with none by 18 %)."""
     exact = K * 0.2 / along * across
     _, row = steady(scene(pair(one, other, 0.2)), 0.8)
@@ -135,12 +135,12 @@ def test_soil_that_may_move_settles_as_water_leaves_it():
 
 def test_a_run_stops_when_the_water_at_a_face_is_used_up():
     model = Simulation(scene(pair("left", "right", 0.3), soil={"permeability": 0.2}))
-    with pytest.raises(Unstable, match="way of the water through it"):
-        for _ in range(40):
-            model.advance(50)
-            model.check()
     part = model.part(FacePart)
-    assert max(part.passed(face) for face in part.drains) == pytest.approx(FARTHEST * SPACING, rel=0.1)
+    while max(part.passed(face) for face in part.drains) < FARTHEST * SPACING:
+        model.check()
+        model.advance(20)
+    with pytest.raises(Unstable, match="way of the water through it"):
+        model.check()
 
 
 def test_check_says_when_that_will_be_and_when_water_is_too_soft():
@@ -153,7 +153,7 @@ def test_check_says_when_that_will_be_and_when_water_is_too_soft():
 
 
 @pytest.mark.parametrize(
-    "changes, said",
+    ("changes", "said"),
     [
         ({"soil": {"saturated": False}}, "needs ground whose pores are full"),
         ({"face": [{"side": "lid", "head": 1.0}], "tank": {"width": WIDE, "height": HIGH, "lid": False}}, "open tank"),
@@ -180,4 +180,5 @@ def test_a_scene_without_faces_builds_none():
     assert model.flow.water.drains == []
     assert not any(isinstance(part, FacePart) for part in model.parts)
     assert not any("flow in" in name for name in model.series())
-    assert np.array_equal(model.flow.water.layer.x[model.flow.water.layer.fluid :], model.flow.water.home[model.flow.water.layer.fluid :])  # fmt: skip  # noqa: E501
+    water = model.flow.water
+    assert np.array_equal(water.layer.x[water.layer.fluid :], water.home[water.layer.fluid :])

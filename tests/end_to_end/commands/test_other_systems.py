@@ -36,16 +36,16 @@ def imports(name, *rest, **options):
 POSIX = ("resource", "pwd", "grp", "termios", "tty", "pty", "syslog")
 builtins.__import__ = imports
 
-def without(name):
-    own = getattr(os, name)
-    def call(*words, **options):
-        if ours():
-            raise AttributeError(f"module 'os' has no attribute {name!r}")
-        return own(*words, **options)
-    setattr(os, name, call)
+LACKED = ("sched_getaffinity", "sysconf", "fork", "getuid", "uname", "statvfs", "getpgid", "killpg", "getloadavg")
 
-for name in ("sched_getaffinity", "sysconf", "fork", "getuid", "uname", "statvfs", "getpgid", "killpg", "getloadavg"):
-    without(name)
+class Lacking(type(os)):
+    # to our code, hasattr and getattr with a default included, os has none of these
+    def __getattribute__(self, name):
+        if name in LACKED and ours():
+            raise AttributeError(f"module 'os' has no attribute {name!r}")
+        return super().__getattribute__(name)
+
+os.__class__ = Lacking
 kill = os.kill
 
 def kills(process, number):
