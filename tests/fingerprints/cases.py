@@ -64,7 +64,7 @@ SCRIPTS: dict[str, Script] = {
         "demseg_disc": 2000, "demseg_repose": 10_000, "demseg_segment": 2000, "demseg_triangle": 2000,
         "dry_column_collapse": 10_000, "dry_levee": 60, "grain_size": 10_000, "hanging_chain": 2000, "imbibition": 60,
         "liquid_columns": 200, "micro_to_macro": 50, "oscillating_drop": 60, "rock": 15_000,
-        "rolling_on_a_slope": 2000, 
+        "rolling_on_a_slope": 2000,
         "simple_shear": 15_000, "soil_stress_noise": 150, "sph_corrections": 100, "step_stability": 300,
         "tumbling_plate": 60, "turned_stressed_block": 150, "upward_flow": 60,
     }.items()

@@ -131,8 +131,8 @@ class MixturePart(Part):
 
     def show(self, snapshot: Snapshot) -> None:
         """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
-        pressure (of soil mean effective stress, of soil that is held that of its water), porosity, and in ground that is
-        held and without air the head of the water."""
+        pressure (of soil mean effective stress, of soil that is held that of its water), porosity, and in ground that
+        is held and without air the head of the water."""
         snapshot.clouds |= self._clouds()
 
     def state(self) -> dict[str, Any]:

@@ -41,7 +41,8 @@ TABLES: dict[str, dict[str, list[str]]] = {
     "continuum_sph": {
         "series.csv": [
             f"{_C}/simulation.py", f"{_C}/parts/water.py", f"{_C}/parts/soil.py", f"{_C}/parts/mixture.py:row",
-            f"{_C}/parts/reservoirs.py", f"{_C}/parts/faces.py", f"{_C}/parts/sheet_pile.py", f"{_C}/parts/suction.py", f"{_C}/parts/air.py",
+            f"{_C}/parts/reservoirs.py", f"{_C}/parts/faces.py",
+            f"{_C}/parts/sheet_pile.py", f"{_C}/parts/suction.py", f"{_C}/parts/air.py",
             f"{_C}/parts/inclusion.py",
         ],
         "probes.csv": [f"{_C}/parts/instruments.py:probe_row", f"{_C}/parts/instruments.py:mean_row"],

@@ -120,10 +120,10 @@ def test_soil_that_may_move_settles_as_water_leaves_it():
     ∫ i ρ g z/M dz = Δh ρ g H/2M, to the half row that its surface is uncertain by and what drag has not yet let go."""
     fall, modulus = 0.2, 1e6 * 0.7 / (1.3 * 0.4)
     soil = {"held": False, "elastic": True, "stiffness": 1e6, "permeability": 5e-3, "stress": "geostatic"}
-    given = scene([{"name": "high", "side": "lid", "head": HIGH + fall}, {"name": "low", "side": "floor", "head": HIGH}],
-                  soil=soil)  # fmt: skip
-    same = scene([{"name": "high", "side": "lid", "head": HIGH}, {"name": "low", "side": "floor", "head": HIGH}],
-                 soil=soil)  # fmt: skip
+    low = {"name": "low", "side": "floor", "head": HIGH}
+    given, same = (
+        scene([{"name": "high", "side": "lid", "head": head}, low], soil=soil) for head in (HIGH + fall, HIGH)
+    )
 
     def top(model):
         x = model.flow.water.skeleton.x
