@@ -238,6 +238,7 @@ def departure(*, seconds: float = 2.0, exchanged: bool = True) -> float:
     because="shear along the floor takes σ_xx from K0 σ_yy to σ_yy and mean stress from (1 + K0)/2 of the weight to "
     "all of it, at once, so by twice that in the swing; over the area modulus B",
     tolerance=2.0 * 0.5 * (1.0 - POISSON / (1.0 - POISSON)) * DENSITY * GRAVITY * math.cos(math.radians(STEEP)) / AREA,
+    slow=True,
 )
 def density_row() -> Measured:
     """Largest departure of a particle's density over the run, over its density."""

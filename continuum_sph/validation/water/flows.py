@@ -95,6 +95,7 @@ def vortex_error(across: int, shifting: float = 2.0, corrected: bool = True, end
     because="pressure has twice the wave number of the vortices, 4π; gradient and divergence smooth it by "
     "SPREAD (4π h)² each, h = 1.3/50",
     tolerance=2.0 * SPREAD * (4.0 * np.pi * 1.3 / 50) ** 2,
+    slow=True,
 )
 def taylor_green_row() -> Measured:
     """Largest error of the vortices' speed until 0.67 of it is left, 50 particles in a period."""

@@ -197,6 +197,7 @@ def jump(across: int, seconds: float = 0.25, tension: float = TENSION) -> float:
     source="Young 1805, Laplace 1806: Δp = σ/R",
     because="the radius of a drop of particles is uncertain by a quarter of a spacing, R = 10 spacings; so is Δp",
     tolerance=0.25 / 10,
+    slow=True,
 )
 def young_laplace_row() -> Measured:
     """Pressure jump over σ/R, ten times denser drop, 10 particles in its radius."""

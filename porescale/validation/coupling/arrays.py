@@ -212,6 +212,7 @@ def arrays_at_any_viscosity() -> Measured:
     source="as for square arrays, solid fraction 0.4",
     because="required: 2 % as the mean over places, 4 % of single ones; the gap is 4 cells wide",
     tolerance=2 * REQUIRED,
+    slow=True,
 )
 def denser_array() -> Measured:
     """Drag at 10 cells per diameter, tau 0.52, 0.8 and 1."""

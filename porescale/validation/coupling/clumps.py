@@ -89,6 +89,7 @@ EPS = 2.0**-52
     source="Newton: momentum of clumps and fluid, less that of the fluid inside them, in shares of members",
     because="round-off: each of 200 fluid and 800 contact steps rounds every velocity, all one way: 1000 eps",
     tolerance=1000 * EPS,
+    slow=True,
 )
 def momentum() -> Measured:
     """Error of the momentum budget over sum m |v| at the start: two clumps that collide in a periodic box."""

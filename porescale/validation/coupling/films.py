@@ -72,6 +72,7 @@ def closing(
     source="Jeffrey & Onishi 1981: a cylinder closes on a wall, F 4 pi mu V/(alpha - tanh alpha)",
     because="required: 5 %; what the lattice lacks was measured here, and at other sizes and places",
     tolerance=REQUIRED,
+    slow=True,
 )
 def films() -> Measured:
     """Force over the law's at gaps of 0.2, 0.3, 0.5 and 1 cell, radius 10, and the same with radius 5."""

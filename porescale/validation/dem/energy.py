@@ -41,6 +41,7 @@ def impact_residual(law: Linear, steps_per_contact: float, phases: int = 20) -> 
     source="first law; order of the residual by halving the step",
     because="first order or better: 0.05 below one, as the mean over touch phases still varies by 5 % at T_c/50",
     tolerance=0.05,
+    slow=True,
 )
 def energy_order() -> Measured:
     """Order at which the unaccounted energy of oblique, spinning impacts falls from T_c/50 to T_c/200, three laws."""

@@ -57,6 +57,7 @@ def momenta() -> Measured:
     source="Newton's third law: equal and opposite torques on both bodies",
     because="60 discs, 5000 steps: round-off 1e-16 per sum, growing like its root, 1e-13 at most",
     tolerance=1e-13,
+    slow=True,
 )
 def rolling_momenta() -> Measured:
     """A cloud of spinning discs that resist rolling, linear and Hertz: relative drift of both momenta."""

@@ -7,8 +7,14 @@ from nbclient.exceptions import CellExecutionError
 from tests.reference.folders import ROOT
 from tests.reference.notebooks import NOTEBOOKS, executed
 
+LONG = {"own_scene"}  # a minute
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+
+def marked(path):
+    return pytest.param(path, marks=pytest.mark.slow) if path.stem in LONG else path
+
+
+@pytest.mark.parametrize("path", [marked(path) for path in NOTEBOOKS], ids=lambda path: path.stem)
 def test_a_notebook_runs(path, tmp_path):
     shown = [output for cell in executed(path, tmp_path).cells for output in cell.get("outputs", ())]
     assert sum("image/png" in output.get("data", {}) for output in shown) >= 2
