@@ -63,7 +63,7 @@ def _ground(scene: Scene) -> Iterator[Feature]:
 
 
 def _water(scene: Scene) -> Iterator[Feature]:
-    """Columns of water, discs of a second fluid, and reservoirs with their levels."""
+    """Columns of water, discs of a second fluid, reservoirs with their levels, and faces with their heads."""
     for k, it in enumerate(scene.water.column):
         name = "water" if len(scene.water.column) == 1 else f"water {k}"
         top, right = it.bottom + it.height, it.left + it.width
@@ -84,6 +84,11 @@ def _water(scene: Scene) -> Iterator[Feature]:
             course = ((middle, first), (middle, last))
         path = ((basin.left, first), (basin.right, first))
         yield Feature("open", f"reservoir {basin.name or k}, {text}", path=path, course=course, dashed=True)
+    for k, face in enumerate(scene.face):
+        start, end = face.reach(scene.tank.width, scene.tank.height)
+        at = {"left": 0.0, "floor": 0.0, "right": scene.tank.width, "lid": scene.tank.height}[face.side]
+        ends = ((start, at), (end, at)) if face.side in ("floor", "lid") else ((at, start), (at, end))
+        yield Feature("open", f"face {face.name or k}, head {face.head:g} m", path=ends)
 
 
 def _measured(scene: Scene) -> Iterator[Feature]:
