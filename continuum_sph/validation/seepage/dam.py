@@ -19,6 +19,7 @@ from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import square_lattice
@@ -115,8 +116,13 @@ class Dam:
 
     @property
     def surface(self) -> Floats:
-        """Exact heights (m) of the free surface at `STATIONS`; of a shape that `SURFACE` has."""
+        """Exact heights (m) of the free surface at `STATIONS`; InputError for a shape that `SURFACE` lacks."""
         shape = round(self.length / self.upstream, 9), round(self.downstream / self.upstream, 9)
+        if shape not in SURFACE:
+            known = ", ".join(f"{long:g} and {low:g}" for long, low in SURFACE)
+            raise InputError(
+                Fault("length and downstream over upstream", shape, "has no surface in the table", "", known)
+            )
         return self.upstream * np.array(SURFACE[shape])
 
     def build(self, **options: float | bool) -> Seepage:
