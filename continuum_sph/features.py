@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from continuum_sph.scene.face import face_names
 from porescale.common.pictures.initial import Feature, Lens, Points
 
 if TYPE_CHECKING:
@@ -84,11 +85,11 @@ def _water(scene: Scene) -> Iterator[Feature]:
             course = ((middle, first), (middle, last))
         path = ((basin.left, first), (basin.right, first))
         yield Feature("open", f"reservoir {basin.name or k}, {text}", path=path, course=course, dashed=True)
-    for k, face in enumerate(scene.face):
-        start, end = face.reach(scene.tank.width, scene.tank.height)
-        at = {"left": 0.0, "floor": 0.0, "right": scene.tank.width, "lid": scene.tank.height}[face.side]
-        ends = ((start, at), (end, at)) if face.side in ("floor", "lid") else ((at, start), (at, end))
-        yield Feature("open", f"face {face.name or k}, head {face.head:g} m", path=ends)
+    for name, face in zip(face_names(scene.face), scene.face, strict=True):
+        size = scene.tank.width, scene.tank.height
+        (start, end), (at, _) = face.reach(size), face.across(size)
+        ends = ((start, at), (end, at)) if face.axis == 0 else ((at, start), (at, end))
+        yield Feature("open", f"{name}, head {face.head:g} m", path=ends)
 
 
 def _measured(scene: Scene) -> Iterator[Feature]:

@@ -11,13 +11,15 @@ from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
 from porescale.common.schema.sections import Section, quantity
 
+Size = tuple[float, float]
+
 
 class FaceSection(Section):
     """A stretch of a side of the tank through which the water of the pores passes, at a constant head.
 
     ``start`` and ``end`` are places along the side, x of floor and lid, y of the others; left out, the stretch goes to
-    the corner.  The ground is full of water, and none comes in anew: water may pass by half a spacing.  A head lies no
-    lower than the face.
+    the corner.  It takes the rows of particles whose middles lie in it.  The ground is full of water, and none comes in
+    anew: water may pass by half a spacing.  A head lies no lower than the face.
     """
 
     name: str = pydantic.Field("", description="name in the columns (default: its number)")
@@ -26,57 +28,72 @@ class FaceSection(Section):
     start: float | None = quantity("m", None, ge=0, le=1e5, help="where it begins along the side")
     end: float | None = quantity("m", None, ge=0, le=1e5, help="where it ends along the side")
 
-    def reach(self, width: float, height: float) -> tuple[float, float]:
-        """Where it begins and ends along its side of a tank of ``width`` by ``height``, m."""
-        along = width if self.side in ("floor", "lid") else height
-        return self.start or 0.0, along if self.end is None else self.end
+    @property
+    def axis(self) -> int:
+        """Axis along which the side runs: 0 of floor and lid, 1 of left and right."""
+        return 0 if self.side in ("floor", "lid") else 1
 
-    def faults(self, key: str, width: float, height: float, spacing: float) -> list[Fault]:
-        """What is wrong with it in a tank of ``width`` by ``height``, m, with particles of a ``spacing``, m."""
-        start, end = self.reach(width, height)
-        longest = width if self.side in ("floor", "lid") else height
-        if end > longest * (1.0 + 1e-9):
-            return [Fault(f"{key}.end", end, "lies beyond the side", "m", f"<= {longest:g}")]
-        if end - start < 2.0 * spacing * (1.0 - 1e-9):
-            return [Fault(f"{key}.end", end, "leaves fewer than 2 particles along it", "m",
-                          f">= {start + 2.0 * spacing:g}")]  # fmt: skip
-        highest = {"floor": 0.0, "lid": height}.get(self.side, end)
+    def across(self, size: Size) -> tuple[float, float]:
+        """(Where the side of a tank of a ``size`` (width, height), m, stands on the other axis, m;  which way into the
+        tank, 1 or -1)."""
+        return (size[1 - self.axis], -1.0) if self.side in ("right", "lid") else (0.0, 1.0)
+
+    def reach(self, size: Size) -> tuple[float, float]:
+        """Where it begins and ends along its side of a tank of a ``size`` (width, height), m."""
+        return self.start or 0.0, size[self.axis] if self.end is None else self.end
+
+    def along(self, size: Size, spacing: float) -> Floats:
+        """Places (n, 2) m of the particles of a ``spacing`` (m) beside it in a tank of a ``size``, m."""
+        (start, end), (at, inward) = self.reach(size), self.across(size)
+        middles = (np.arange(round(size[self.axis] / spacing)) + 0.5) * spacing
+        there = middles[(middles > start) & (middles < end)]
+        beside = np.full(len(there), at + 0.5 * inward * spacing)
+        return np.column_stack((there, beside) if self.axis == 0 else (beside, there))
+
+    def faults(self, key: str, size: Size, spacing: float) -> list[Fault]:
+        """What is wrong with it in a tank of a ``size``, m, with particles of a ``spacing``, m."""
+        (start, end), longest = self.reach(size), size[self.axis]
+        for name, value in (("start", start), ("end", end)):
+            if value > longest * (1.0 + 1e-9):
+                return [Fault(f"{key}.{name}", value, "lies beyond the side", "m", f"<= {longest:g}")]
+        if len(self.along(size, spacing)) < 2:
+            few = "leaves fewer than 2 rows of particles"
+            if self.end is None or start + 2.0 * spacing > longest:
+                return [Fault(f"{key}.start", start, few, "m", f"<= {longest - 2.0 * spacing:g}")]
+            return [Fault(f"{key}.end", end, few, "m", f">= {start + 2.0 * spacing:g}")]
+        highest = end if self.axis else self.across(size)[0]
         if self.head < highest * (1.0 - 1e-9):
-            return [Fault(f"{key}.head", self.head, "would have the water at the face pull", "m", f">= {highest:g}",
-                          "raise it, or end the face below it")]  # fmt: skip
+            return [Fault(f"{key}.head", self.head, "makes the pressure at its upper end negative", "m",
+                          f">= {highest:g}", "raise it, or end the face below it")]  # fmt: skip
         return []
-
-    def along(self, width: float, height: float, spacing: float) -> Floats:
-        """Places (n, 2) m of the particles beside it in a tank of ``width`` by ``height``, m, of a ``spacing``, m."""
-        start, end = self.reach(width, height)
-        there = np.arange(start + 0.5 * spacing, end, spacing)
-        at = {"left": 0.5 * spacing, "right": width - 0.5 * spacing, "floor": 0.5 * spacing,
-              "lid": height - 0.5 * spacing}[self.side]  # fmt: skip
-        across = np.full(len(there), at)
-        return np.column_stack((there, across) if self.side in ("floor", "lid") else (across, there))
 
 
 def face_faults(
-    faces: Sequence[FaceSection], soil: SoilSection | None, lid: bool, size: tuple[float, float], spacing: float
+    faces: Sequence[FaceSection], soil: SoilSection | None, lid: bool, size: Size, spacing: float
 ) -> list[Fault]:
     """What is wrong with the faces of a tank of a ``size`` (width, height), m, with particles of a ``spacing``, m."""
-    found = []
+    found, names = [], face_names(faces)
     for k, it in enumerate(faces):
         key = f"face[{k}]"
-        wrong = it.faults(key, *size, spacing)
+        wrong = it.faults(key, size, spacing)
         found += wrong
         if soil is None or not soil.saturated:
             found.append(Fault(key, "given", "needs ground whose pores are full",
                                repair="add [soil] and soil.saturated = true"))  # fmt: skip
-        elif not wrong and not np.any([body.holds(it.along(*size, spacing)) for body in soil.body], axis=0).all():
+        elif not wrong and not np.any([body.holds(it.along(size, spacing)) for body in soil.body], axis=0).all():
             found.append(Fault(key, it.side, "is not along ground all the way", repair="give start and end, or let "
                                "soil.body reach the side"))  # fmt: skip
         if it.side == "lid" and not lid:
             found.append(Fault(f"{key}.side", "lid", "is that of an open tank", repair="give tank.lid = true"))
         for j, other in enumerate(faces[:k]):
-            (start, end), (begin, stop) = it.reach(*size), other.reach(*size)
+            (start, end), (begin, stop) = it.reach(size), other.reach(size)
             if other.side == it.side and min(end, stop) - max(start, begin) > 0.5 * spacing:
                 found.append(Fault(key, it.side, f"overlaps face[{j}]", repair="move or shorten one of them"))
-            if it.name and other.name == it.name:
-                found.append(Fault(f"{key}.name", it.name, "is that of another face", repair="rename it"))
+        if names[k] in names[:k]:
+            found.append(Fault(f"{key}.name", names[k], "is that of another face", repair="rename it"))
     return found
+
+
+def face_names(faces: Sequence[FaceSection]) -> list[str]:
+    """Names of the faces in columns and messages."""
+    return [it.name or f"face {number}" for number, it in enumerate(faces)]

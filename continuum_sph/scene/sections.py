@@ -57,11 +57,20 @@ class Scene(SceneBase):
         return with_material(table, (info.context or {}).get("folder"))
 
     @property
-    def head(self) -> float:
-        """Height of the highest water above the floor, m."""
+    def highest(self) -> float:
+        """Height of the highest water in the open above the floor, m."""
         tops = [column.bottom + column.height for column in self.water.column]
-        heads = [*(it.highest for it in self.reservoir), *(it.head for it in self.face)]
-        return max([*tops, *heads], default=0.0)
+        return max([*tops, *(it.highest for it in self.reservoir)], default=0.0)
+
+    @property
+    def head(self) -> float:
+        """Highest head above the floor, m: of water in the open, and of faces."""
+        return max([self.highest, *(it.head for it in self.face)])
+
+    @property
+    def has_water(self) -> bool:
+        """Whether there is water, now or later."""
+        return bool(self.water.column or self.reservoir or self.face)
 
     @property
     def fall_speed(self) -> float:
@@ -83,7 +92,7 @@ class Scene(SceneBase):
     @property
     def dry(self) -> bool:
         """Whether there is soil and no water, now or later."""
-        return self.soil is not None and not (self.water.column or self.reservoir or self.face)
+        return self.soil is not None and not self.has_water
 
     @property
     def inner(self) -> tuple[float, float]:
@@ -111,11 +120,11 @@ class Scene(SceneBase):
             faults += self.pile.faults(*self.inner, spacing)
             if self.soil is None:
                 faults.append(Fault("pile", "given", "needs soil beside it", repair="add [soil]"))
-        if self.output.energy and not (self.water.column or self.reservoir):
+        if self.output.energy and not self.has_water:
             faults.append(Fault("output.energy", True, "is of water, of which there is none", repair="leave it out"))
         if self.reservoir and self.soil is None:
             faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
-        if self.air is not None and (self.soil is None or not (self.water.column or self.reservoir)):
+        if self.air is not None and (self.soil is None or not self.has_water):
             faults.append(Fault("air", "given", "needs soil and water", repair="add [soil] and [[water.column]]"))
         if self.air is not None and self.soil is not None and self.soil.saturated:
             faults.append(Fault("air", "given", "has no room in full pores", repair="take out soil.saturated"))

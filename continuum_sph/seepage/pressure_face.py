@@ -88,8 +88,8 @@ def follow(rows, near, x, v, acceleration, nx, ny, step):
     ``step`` (s), on the mean; overwrites their ``x`` (n, 2) m.
 
     near: see `water.bundles`;  v (n, 2) m/s, acceleration (fluid, 2) m/s²: at the start of the step, whose drift is
-    that of velocities half a step on.  Drag is not in that acceleration: what it adds is small, but always the same
-    way.
+    that of velocities half a step on.  The acceleration is that without drag: a drift without it lags by little, but
+    always the same way.
     """
     h = near.h
     half = 0.5 * step

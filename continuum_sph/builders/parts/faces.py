@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from continuum_sph.scene.face import FaceSection
+from continuum_sph.scene.face import FaceSection, face_names
 from continuum_sph.seepage import Drain, PoreFlow
 from continuum_sph.water.state import VX, VY
 from porescale.common.core.errors import Unstable
@@ -15,30 +16,19 @@ FARTHEST = 0.5
 """Spacings by which water may pass a face: no more particles come in."""
 
 
-def name_of(section: FaceSection, number: int) -> str:
-    """Name of a face in columns and messages."""
-    return section.name or f"face {number}"
-
-
-def drain(section: FaceSection, walls: Floats, first: int, size: tuple[float, float], weight: float) -> Drain:
+def drain(section: FaceSection, x: Floats, walls: NDArray[np.int64], size: tuple[float, float], weight: float) -> Drain:
     """The face of a section in a tank of a ``size`` (width, height), m.
 
-    walls (w, 2) m: wall particles of the tank, of which those in corners are none of a face's;  first : number of the
-    first of them;  weight : ρ g, N/m³.
+    x (n, 2) m: all particles;  walls : numbers of the wall particles of the tank, of which those in corners are none of
+    a face's;  weight : ρ g, N/m³.
     """
-    width, height = size
-    x, y = walls.T
-    beside, upright = (y > 0.0) & (y < height), (x > 0.0) & (x < width)
-    mask, point, normal, along = {
-        "left": (beside & (x < 0.0), (0.0, 0.0), (1.0, 0.0), y),
-        "right": (beside & (x > width), (width, 0.0), (-1.0, 0.0), y),
-        "floor": (upright & (y < 0.0), (0.0, 0.0), (0.0, 1.0), x),
-        "lid": (upright & (y > height), (0.0, height), (0.0, -1.0), x),
-    }[section.side]
-    start, end = section.reach(width, height)
-    own = np.flatnonzero(mask & (along > start) & (along < end))
-    foot = np.clip(y[own], 0.0, height)
-    return Drain(first + own, point, normal, weight * (section.head - foot))
+    axis, (at, inward), (start, end) = section.axis, section.across(size), section.reach(size)
+    along, beyond = x[walls, axis], (x[walls, 1 - axis] - at) * inward
+    own = (beyond < 0.0) & (along > max(start, 0.0)) & (along < min(end, size[axis]))
+    point, normal = ((0.0, at), (0.0, inward)) if axis == 0 else ((at, 0.0), (inward, 0.0))
+    face = Drain(walls[own], point, normal, np.zeros(int(own.sum())))
+    face.hydrostatic(x, section.head, weight)
+    return face
 
 
 class FacePart(Part):
@@ -48,7 +38,7 @@ class FacePart(Part):
     """
 
     def __init__(self, sections: Sequence[FaceSection], flow: PoreFlow, spacing: float) -> None:
-        self.names = [name_of(section, number) for number, section in enumerate(sections)]
+        self.names = face_names(sections)
         self.drains, self.flow, self.spacing = flow.drains, flow, spacing
         self.outer = [face.rows[self._depth(face, flow.home) < spacing] for face in self.drains]
 
@@ -69,9 +59,9 @@ class FacePart(Part):
             way = self.passed(face)
             if way > FARTHEST * self.spacing:
                 raise Unstable(
-                    name, "way of the water through it", way, "m", self.flow.step, self.flow.time,
-                    f"no more than {FARTHEST:g} spacings of water are there to pass a face: end sooner, or use a "
-                    "reservoir",
+                    name, "distance that water has moved through the face", way, "m", self.flow.step, self.flow.time,
+                    f"no more than {FARTHEST:g} spacings of it are there; what is recorded so far holds: end sooner, "
+                    "or use a reservoir",
                 )  # fmt: skip
 
     def row(self) -> dict[str, float]:

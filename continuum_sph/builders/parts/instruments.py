@@ -18,7 +18,7 @@ from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
 
 SUPPORT = 2.0  # of the kernels, in smoothing lengths
-OPEN = 0.9  # share of a particle's volume that is water; soil about it has a tenth of it, or less
+OPEN = 1 / 6  # of the grains that ground has: water about which there are fewer is in the open
 THIN = 1e-3  # of a mean square distance: particles on a line give no slope across it
 
 
@@ -90,13 +90,13 @@ def discharge(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float
     return float((cloud.volume * share * cloud.v[:, 0])[inside].sum()) / breadth if breadth > 0.0 else 0.0
 
 
-def open_depth(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float:
+def open_depth(level: LevelSection, cloud: MeasuredWater, share: Floats, least: float) -> float:
     """Depth (m) of the water in the strip of ``level`` that lies in no soil: its volume over the breadth.
 
-    share (n,): of each particle's volume that is water, as smoothed; soil counts where it is less than `OPEN`.
+    share (n,): of each particle's volume that is water, as smoothed; there is soil where it is ``least`` or less.
     """
     inside, breadth = strip(level, cloud)
-    return float(cloud.volume[inside & (share > OPEN)].sum()) / breadth if breadth > 0.0 else 0.0
+    return float(cloud.volume[inside & (share > least)].sum()) / breadth if breadth > 0.0 else 0.0
 
 
 def mean_row(name: str, probe: ProbeSection, cloud: MeasuredWater, water: Floats) -> dict[str, float]:

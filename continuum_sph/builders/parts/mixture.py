@@ -10,11 +10,11 @@ from continuum_sph.builders.parts.air import AIR as GAS
 from continuum_sph.builders.parts.air import AirPart
 from continuum_sph.builders.parts.faces import FacePart
 from continuum_sph.builders.parts.held_soil import HeldSoilPart
-from continuum_sph.builders.parts.instruments import MeasuredWater, discharge, level_row, open_depth, probe_row
+from continuum_sph.builders.parts.instruments import OPEN, MeasuredWater, discharge, level_row, open_depth, probe_row
 from continuum_sph.builders.parts.phreatic import NAME, phreatic_row
 from continuum_sph.builders.parts.pore_water import seepage_flow
 from continuum_sph.builders.parts.reservoirs import ReservoirPart
-from continuum_sph.builders.parts.sheet_pile import ExitGradientPart, sheet_pile
+from continuum_sph.builders.parts.sheet_pile import ExitGradientPart, given_heads, sheet_pile
 from continuum_sph.builders.parts.soil import SoilPart
 from continuum_sph.builders.parts.water import REPAIR, WaterPart
 from continuum_sph.builders.sanity import Now, require_finite, require_step
@@ -150,6 +150,7 @@ class PoreInstruments(Part):
 
     def __init__(self, scene: Scene, flow: PoreFlow) -> None:
         self.probes, self.levels, self.flow, self.width = scene.probe, scene.level, flow, scene.inner[0]
+        self.open = 1.0 - OPEN * (1.0 - flow.resistance.porosity)
 
     def row(self) -> dict[str, float]:
         """Mass of the water in pores.
@@ -183,7 +184,7 @@ class PoreInstruments(Part):
             through = discharge(level, cloud, flow.porosity[there])
             name = level.name or f"level {number}"
             found["levels"][f"{name} discharge (m2/s)"] = through
-            found["levels"][f"{name} open depth (m)"] = open_depth(level, cloud, flow.porosity[there])
+            found["levels"][f"{name} open depth (m)"] = open_depth(level, cloud, flow.porosity[there], self.open)
         return found
 
 
@@ -211,8 +212,10 @@ def assemble(scene: Scene) -> Assembly:
     if scene.face:
         parts.append(FacePart(scene.face, both.water, scene.numerics.spacing))
     if scene.pile and scene.gravity > 0.0:
-        pile = sheet_pile(scene.pile, scene.numerics.spacing)
-        parts.append(ExitGradientPart(pile, both.water, scene.water.density * scene.gravity, scene.face))
+        spacing = scene.numerics.spacing
+        pile = sheet_pile(scene.pile, spacing)
+        given = given_heads(scene.face, pile.x, scene.inner, spacing)
+        parts.append(ExitGradientPart(pile, both.water, scene.water.density * scene.gravity, given))
     parts.append(PoreInstruments(scene, both.water))
     if scene.air:
         parts.append(AirPart(both.water))

@@ -129,7 +129,7 @@ def seepage_flow(scene: Scene) -> Seepage:
     walls, side = tank_walls(width, height, spacing, layers, lid=scene.tank.lid), np.zeros(0, np.int64)
     if pile:
         piled, _, side = pile.particles(layers, height)
-        walls = np.concatenate((walls, piled))
+        walls = np.concatenate((walls[~pile.holds(walls)], piled))
     mass = np.concatenate((rho * area, np.full(len(walls), law.state.density * area)))
     mass[present : len(x)] = 0.0
     layer = Layer(len(x), np.concatenate((x, walls)), np.concatenate((v, np.zeros_like(walls))), mass, rho)
@@ -146,7 +146,8 @@ def seepage_flow(scene: Scene) -> Seepage:
         resistance=Resistance(section.porosity, section.permeability_law),
     )  # fmt: skip
     size, weight = (width, height), scene.water.density * scene.gravity
-    flow.drains += [drain(it, walls[: len(walls) - len(side)], len(x), size, weight) for it in scene.face]
+    of_tank = np.arange(len(x), layer.count - len(side))
+    flow.drains += [drain(it, layer.x, of_tank, size, weight) for it in scene.face]
     if scene.air:
         flow.specific_weight = specific_weights(layer.material[: len(x)], law, flow.resistance.gravity)
     flow.lower[:] = 0.0

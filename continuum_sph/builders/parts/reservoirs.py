@@ -66,8 +66,8 @@ def spare(scene: Scene, x: Floats) -> int:
     """Particles of water that wait: what the tank holds up to its highest level, less those at ``x`` (n, 2) m there."""
     if not scene.reservoir:
         return 0
-    rows = math.ceil(scene.head / scene.numerics.spacing) + 1
-    present = int((x[:, 1] < scene.head).sum())
+    rows = math.ceil(scene.highest / scene.numerics.spacing) + 1
+    present = int((x[:, 1] < scene.highest).sum())
     return max(round(scene.inner[0] / scene.numerics.spacing) * rows - present, 0) + 1
 
 

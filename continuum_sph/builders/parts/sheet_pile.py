@@ -46,11 +46,13 @@ def ground_at(section: SoilSection, x: float) -> float:
 
 
 class ExitGradientPart(Part):
-    """The exit gradient beside a ``pile`` in a ``flow`` of water whose weight is ρ g (N/m³) > 0; ``faces`` of the
-    tank."""
+    """The exit gradient beside a ``pile`` in a ``flow`` of water whose weight is ρ g (N/m³) > 0.
 
-    def __init__(self, pile: Pile, flow: PoreFlow, weight: float, faces: Sequence[FaceSection] = ()) -> None:
-        self.pile, self.flow, self.weight, self.given = pile, flow, weight, given_heads(faces, pile.x)
+    given : head (m) over the ground on its left and right, None: as found.
+    """
+
+    def __init__(self, pile: Pile, flow: PoreFlow, weight: float, given: tuple[float | None, float | None]) -> None:
+        self.pile, self.flow, self.weight, self.given = pile, flow, weight, given
 
     def row(self) -> dict[str, float]:
         """The column of the exit gradient i_E at the sheet pile.
@@ -111,8 +113,12 @@ def exit_gradient(pile: Pile, flow: PoreFlow, weight: float, given: tuple[float 
     return beside(pile, x, layer.pressure[:n][there] / weight + x[:, 1], flow.skeleton.x, given)
 
 
-def given_heads(faces: Sequence[FaceSection], x: float) -> tuple[float | None, float | None]:
-    """Heads (m) of the ``faces`` of the lid on the left and right of a pile at ``x``, m; None where there is none."""
-    left = [it.head for it in faces if it.side == "lid" and (it.start or 0.0) < x]
-    right = [it.head for it in faces if it.side == "lid" and (it.end is None or it.end > x)]
-    return left[-1] if left else None, right[0] if right else None
+def given_heads(
+    faces: Sequence[FaceSection], x: float, size: tuple[float, float], spacing: float
+) -> tuple[float | None, float | None]:
+    """Heads (m) of the nearest faces of the lid on the left and right of a pile at ``x``, m; None where there is none
+    within `OPEN` spacings (m) of it.  size : of the tank, m."""
+    lid, near = [(*it.reach(size), it.head) for it in faces if it.side == "lid"], OPEN * spacing
+    left = max(((end, head) for start, end, head in lid if start < x < end + near), default=None)
+    right = min(((start, head) for start, end, head in lid if start - near < x < end), default=None)
+    return left[1] if left else None, right[1] if right else None

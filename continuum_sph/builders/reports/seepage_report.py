@@ -2,8 +2,10 @@
 
 import math
 
+import numpy as np
+
 from continuum_sph.builders.parts.air import air_report, dry_pores
-from continuum_sph.builders.parts.faces import FARTHEST, name_of
+from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law
 from continuum_sph.builders.parts.sheet_pile import LEAST, ground_at, resolved, sheet_pile
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
@@ -11,18 +13,20 @@ from continuum_sph.builders.parts.water import water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
 from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import water_report
+from continuum_sph.scene.face import face_names
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
 from porescale.common.api.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 
 RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
 REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
 STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level
 STEADY = 1.4  # h over spacings from which on it does so for longer
-STEADY_AFTER = 2.0  # times in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
+STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
 
@@ -65,7 +69,7 @@ def seepage_report(scene: Scene) -> Report:
     if scene.reservoir:
         levels(scene, out, wetted=not section.saturated and len(dry_pores(scene.water.column, soil)) > 0)
     if scene.face:
-        faces(scene, out)
+        faces(scene, out, soil)
     return out
 
 
@@ -147,38 +151,51 @@ def levels(scene: Scene, out: Report, *, wetted: bool) -> None:
         )
 
 
-def faces(scene: Scene, out: Report) -> None:
-    """Rows on heads at sides of the tank, and a warning where more water passes them than there is."""
+def faces(scene: Scene, out: Report, soil: Floats) -> None:
+    """Rows on heads at sides of the tank with ``soil`` (s, 2) m, and warnings where more water passes than there is,
+    or the run ends before the flow is steady."""
     section, numerics, state = soil_section(scene), scene.numerics, water_state(scene)
     out.heading("sides that water passes")
-    for number, it in enumerate(scene.face):
-        start, end = it.reach(*scene.inner)
-        out.row(name_of(it, number), it.head, "m", f"head, from {start:g} to {end:g} m along the {it.side}")
+    for name, it in zip(face_names(scene.face), scene.face, strict=True):
+        start, end = it.reach(scene.inner)
+        out.row(name, it.head, "m", f"head, from {start:g} to {end:g} m along the {it.side}")
     storage = section.porosity / (state.density * state.sound_speed**2)
     storage += 0.0 if section.held else 1.0 / largest_modulus(scene)
     spread = section.permeability / (state.density * scene.gravity * storage)
-    slow = max(scene.inner) ** 2 / spread
-    out.row(
-        "time in which pressures spread",
-        slow,
-        "s",
-        f"over the longer side of the tank; flow is steady after {STEADY_AFTER:g}",
-    )
-    heads = [it.head for it in scene.face]
-    fall = max(heads) - min(heads)
-    if fall <= 0.0:
-        return
-    seconds = FARTHEST * numerics.spacing * section.porosity * min(scene.inner) / (section.permeability * fall)
-    out.row("time in which water passes half a spacing", seconds, "s", "about; a run ends there")
-    if scene.time.end > seconds:
+    slow = STEADY_AFTER * (float(np.ptp(soil, axis=0).max()) + numerics.spacing) ** 2 / spread
+    out.row("time until the flow is steady", slow, "s", "pressures have spread over the longer side of the ground")
+    steep, last = steepest(scene), scene.time.end
+    if steep > 0.0:
+        seconds = FARTHEST * numerics.spacing * section.porosity / (section.permeability * steep)
+        out.row("time in which water passes half a spacing", seconds, "s", "about; a run ends there")
+        if last > seconds:
+            out.warn(
+                f"after some {seconds:.2g} s more water has passed a face than is there to pass it, and the run stops: "
+                f"lower time.end, or soil.permeability"
+            )
+        last = min(seconds, last)
+    if section.held and slow > last:
+        speed = state.sound_speed * (slow / last) ** 0.5
         out.warn(
-            f"after some {seconds:.2g} s more water has passed a face than is there to pass it, and the run stops: "
-            f"lower time.end, or soil.permeability"
-        )
-    last = min(seconds, scene.time.end)
-    if section.held and STEADY_AFTER * slow > last:
-        speed = state.sound_speed * (STEADY_AFTER * slow / last) ** 0.5
-        out.warn(
-            f"flow is steady after some {STEADY_AFTER * slow:.2g} s, and the run ends at {last:.2g} s; "
+            f"flow is steady after some {slow:.2g} s, and the run ends at {last:.2g} s; "
             f"water.sound_speed = {math.ceil(speed):g} mends it"
         )
+    if not section.held and steep > 0.0 and any(it.side == "lid" for it in scene.face):
+        out.warn("the lid stops water and not soil: ground that flow lifts passes through it")
+
+
+def steepest(scene: Scene) -> float:
+    """About how steep flow is between the faces of a scene, and from them to the surface of the ground where that is
+    open: heads over the shortest way."""
+    spacing, found = scene.numerics.spacing, [0.0]
+    top = soil_section(scene).height
+    places = [it.along(scene.inner, spacing) for it in scene.face]
+    for k, (one, at) in enumerate(zip(scene.face, places, strict=True)):
+        for other, beyond in zip(scene.face[:k], places[:k], strict=True):
+            way = float(np.hypot(*(at[:, None] - beyond[None]).T).min())
+            if scene.pile and one.side == other.side == "lid":
+                way = max(way, 2.0 * (top - scene.pile.tip))
+            found.append(abs(one.head - other.head) / max(way, spacing))
+        if one.side != "lid" and not scene.tank.lid:
+            found.append(abs(one.head - max(top, scene.highest)) / max(top, spacing))
+    return max(found)

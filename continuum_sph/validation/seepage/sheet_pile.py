@@ -73,9 +73,9 @@ def held_ground(
     flow = PoreFlow(
         layer, rules, pairs, skeleton=frame.skeleton, overlap=overlap, resistance=Resistance(POROSITY)
     )  # fmt: skip
-    beside = walls[: len(walls) - len(side)]
+    of_tank = np.arange(n, layer.count - len(side))
     for face in faces:
-        flow.drains.append(drain(face, beside, n, size, WATER * GRAVITY))
+        flow.drains.append(drain(face, layer.x, of_tank, size, WATER * GRAVITY))
         flow.drains[-1].pressure[:] = WATER * GRAVITY * face.head
     both = Seepage(flow, frame)
     both.start()

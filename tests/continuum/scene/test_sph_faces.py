@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.parts.faces import FARTHEST, FacePart
+from continuum_sph.builders.parts.sheet_pile import given_heads, sheet_pile
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
+from continuum_sph.scene.face import FaceSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import pores
 from continuum_sph.validation.seepage.sheet_pile import SheetPile
@@ -139,7 +141,7 @@ def test_a_run_stops_when_the_water_at_a_face_is_used_up():
     while max(part.passed(face) for face in part.drains) < FARTHEST * SPACING:
         model.check()
         model.advance(20)
-    with pytest.raises(Unstable, match="way of the water through it"):
+    with pytest.raises(Unstable, match="distance that water has moved through the face"):
         model.check()
 
 
@@ -150,6 +152,37 @@ def test_check_says_when_that_will_be_and_when_water_is_too_soft():
     assert "mends it" in soft
     assert "water.sound_speed" in soft
     assert not report(scene(pair("left", "right", 0.3))).warnings
+    # one face under open ground, by which water leaves; in a high tank
+    rising = scene(
+        [{"side": "floor", "head": 1.0}], soil={"permeability": 0.2}, tank={"width": WIDE, "height": 4.0, "lid": False}
+    )
+    said = " ".join(report(rising).warnings)
+    assert "the run stops" in said
+    assert "mends it" not in said
+    loose = scene(pair("floor", "lid", 0.2), soil={"held": False, "stiffness": 1e7})
+    assert any("passes through it" in it for it in report(loose).warnings)
+
+
+def test_a_lid_has_no_particles_where_a_pile_stands_for_them():
+    width = 21 * SPACING
+    faces = [{"side": "lid", "end": 0.5, "head": 0.9}, {"side": "lid", "start": 0.55, "head": 0.8}]
+    given = scene(
+        faces, soil=ground(width, 0.8), tank={"width": width, "height": 0.8}, pile={"x": 0.5 * width, "tip": 0.4}
+    )
+    water = Simulation(given).flow.water
+    standing = sheet_pile(given.pile, SPACING)
+    walls = water.layer.x[water.layer.fluid :]
+    there = walls[standing.holds(walls) & (walls[:, 1] > 0.8)]
+    _, often = np.unique(np.round(there / SPACING, 6), axis=0, return_counts=True)
+    assert often.max() == 2  # the pile's own: one seen from its left, one from its right
+
+
+def test_the_heads_over_the_ground_beside_a_pile_are_those_of_the_nearest_faces():
+    size, x = (2.0, 1.0), 1.0
+    faces = [FaceSection(name="", side="lid", head=head, start=start, end=end) for head, start, end in
+             ((1.5, 0.6, 0.9), (1.2, 0.0, 0.5), (1.0, 1.5, 2.0), (1.1, 1.05, 1.5))]  # fmt: skip
+    assert given_heads(faces, x, size, SPACING) == (1.5, 1.1)
+    assert given_heads(faces[1:3], x, size, SPACING) == (None, None)  # too far away to stand over it
 
 
 @pytest.mark.parametrize(
@@ -158,12 +191,16 @@ def test_check_says_when_that_will_be_and_when_water_is_too_soft():
         ({"soil": {"saturated": False}}, "needs ground whose pores are full"),
         ({"face": [{"side": "lid", "head": 1.0}], "tank": {"width": WIDE, "height": HIGH, "lid": False}}, "open tank"),
         ({"face": [{"side": "lid", "head": 1.0, "end": 0.6}]}, "lies beyond the side"),
-        ({"face": [{"side": "left", "head": 1.0, "start": 0.35}]}, "fewer than 2 particles"),
+        ({"face": [{"side": "left", "head": 1.0, "start": 0.35}]}, "fewer than 2 rows"),
         ({"face": [{"side": "left", "head": 1.0}, {"side": "left", "head": 0.5, "start": 0.1}]}, "overlaps face[0]"),
         ({"face": [{"side": "left", "head": 1.0, "name": "a"}, {"side": "right", "head": 0.5, "name": "a"}]},
          "that of another face"),
+        ({"face": [{"side": "left", "head": 1.0, "name": "face 1"}, {"side": "right", "head": 0.5}]},
+         "that of another face"),
+        ({"face": [{"side": "left", "head": 1.0, "start": 5.0}]}, "start = 5.0 m: lies beyond the side"),
+        ({"face": [{"side": "left", "head": 1.0, "start": 0.3, "end": 0.1}]}, "allowed: >= 0.4"),
         ({"tank": {"width": WIDE, "height": 0.6}, "face": [{"side": "lid", "head": 1.0}]}, "not along ground"),
-        ({"face": [{"side": "lid", "head": 0.3}]}, "would have the water at the face pull"),
+        ({"face": [{"side": "lid", "head": 0.3}]}, "makes the pressure at its upper end negative"),
         ({"gravity": 0.0}, "needs gravity"),
     ],
 )  # fmt: skip
