@@ -46,6 +46,7 @@ def test_what_cannot_be_compared_is_one_line(names, peer, package, message):
     assert len(raised.value.faults) == 1
 
 
+@pytest.mark.slow
 def test_both_rates_and_their_ratio_are_printed(monkeypatch, capsys):
     works = [Work(lambda: None, 2.0, "cells/s", 3, variant="ours"),
              Work(lambda: None, 2.0, "cells/s", 3, variant="peer", yardstick=True)]  # fmt: skip

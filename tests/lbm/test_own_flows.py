@@ -161,6 +161,7 @@ def test_speeds_and_numbers_that_are_none_are_refused_before_a_run(tmp_path: Pat
         flow_scene(tmp_path, fluid__body_force="laws.py:pulse")
 
 
+@pytest.mark.slow
 def test_one_and_two_threads_give_the_same_bits_with_a_contact_law_and_a_force(tmp_path: Path) -> None:
     # Discs that stick to each other and to the floor, in fluid that a force of every cell stirs.
     def final(count: int, adhesion: float = 0.02) -> list[Any]:

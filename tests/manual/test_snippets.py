@@ -16,7 +16,24 @@ def run_text(text, tmp_path):
 WITH_CODE = [page for page in PAGES if any(it.runs for it in snippets(page.read_text(encoding="utf-8")))]
 
 
-@pytest.mark.parametrize("page", WITH_CODE, ids=lambda page: page.relative_to(DOCS).with_suffix("").as_posix())
+LONG = {"first_hour/film", "first_hour/python", "first_hour/sweep", "howto/error_bars", "howto/force_on_a_pipe",
+        "howto/open_results", "howto/own_law", "howto/paper_figure", "howto/resume", "howto/unsaturated"}  # fmt: skip
+"""Pages that run for ten seconds or more."""
+
+
+def name_of(page):
+    return page.relative_to(DOCS).with_suffix("").as_posix()
+
+
+def marked(page):
+    return pytest.param(page, marks=pytest.mark.slow) if name_of(page) in LONG else page
+
+
+def test_every_long_page_is_one():
+    assert {name_of(page) for page in WITH_CODE} >= LONG
+
+
+@pytest.mark.parametrize("page", [marked(page) for page in WITH_CODE], ids=name_of)
 def test_a_page_runs(page, tmp_path):
     folder = tmp_path / "folder"
     folder.mkdir()

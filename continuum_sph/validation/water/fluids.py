@@ -238,6 +238,7 @@ def restoring(across: int, tension: float = TENSION) -> tuple[float, float]:
     "(2/R)² 0.28 h²/2 of n = 2, together 20/9 (h/R)² = 3.8 %; drops of strewn particles scatter by 19 %, twice the "
     "error of 96 is 3.8 %",
     tolerance=20.0 / 9.0 * (1.3 / 10) ** 2 + 2.0 * 0.187 / STREWN**0.5,
+    slow=True,
 )
 def restoring_row() -> Measured:
     """What draws a stretched drop back, over the exact one, 10 particles in the radius."""

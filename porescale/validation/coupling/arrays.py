@@ -225,6 +225,7 @@ def denser_array() -> Measured:
     because="required: 5 %; the drag goes as the gap of 2.9 cells to the power -5/2, and is off as if that were 0.05"
     " cells wider, a quarter of a per cent of the diameter",
     tolerance=0.05,
+    slow=True,
 )
 def dense_array() -> Measured:
     """Drag at 20 cells per diameter, tau 0.52, 0.8 and 1, mean over places."""

@@ -89,6 +89,7 @@ def dense_arrays() -> Measured:
     source="as for square arrays, solid fraction 0.1 to 0.4; a hexagonal one, 0.4; a disc on its way through its array",
     because="1 %, as for the parameter of plane walls: what dense arrays gain, looser ones must not lose",
     tolerance=REQUIRED,
+    slow=True,
 )
 def looser_arrays() -> Measured:
     """Drag at 10 cells per diameter, magic parameter 1/24: at tau 0.8 and 1, at tau 1, and at tau 0.8 on the way."""

@@ -97,6 +97,7 @@ def loads_on_neutral(steps: int, extra: float = 0.0) -> list[float]:
     source="Galilean invariance: b rho (u - v) = 0 in every cell",
     because="round-off: four roundings of 0.036 in each of the 110 cells of the largest, all one way",
     tolerance=4 * 110 * 0.036 * EPS,
+    slow=True,
 )
 def neutral() -> Measured:
     """Largest load, and torque over the size, on three polygons of density 1 that uniform flow carries, 300 steps."""

@@ -139,6 +139,7 @@ def release(
     because="4 %: the disc looks C h²/d too big (0.6 % in added mass), a wall ten diameters off adds 2 (a/W)² = 0.5 %"
     " of it, and at 0.05 the rim is 2 cells thick where the viscous layer has 2.2",
     tolerance=0.04,
+    slow=True,
 )
 def release_row() -> Measured:
     """v/((s - 1) g a²/nu) at nu t/a² 0.05, 0.1, 0.2, 0.5 for s 1.5, 2.5, 7.8; tau 0.56, 20 cells per diameter."""

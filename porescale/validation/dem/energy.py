@@ -144,6 +144,7 @@ def unaccounted(drives: tuple[str, ...], steps_per_contact: float, seeds: int = 
     source="first law: clumps, bodies moved and pushed, walls that move, turn and bear a load, tutorial I-2 and I-3",
     because="a dashpot is counted half a step too long at touch: w0 dt/pi = 1/200 of what is lost, at T_c/200",
     tolerance=1.0 / 200.0,
+    slow=True,
 )
 def driven() -> Measured:
     """Unaccounted energy over the energy turned over, in boxes without drive, with each, and with all."""

@@ -244,6 +244,7 @@ def masses() -> Measured:
     source="first law; " + TUTORIAL + " I-2: segment and polygon that bounce, without loss",
     because="required: below 1e-3 of the kinetic energy, here at 200 steps in a contact",
     tolerance=1e-3,
+    slow=True,
 )
 def bouncing_row() -> Measured:
     """Largest unaccounted energy of a single segment and of a pentagon that bounce about a container with edges up and

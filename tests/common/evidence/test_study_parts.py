@@ -59,6 +59,7 @@ def falling():
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_smallest_kernels_do_what_moving_discs_in_water_do():
     coupled = falling()
     for _ in range(2):

@@ -63,6 +63,7 @@ def test_flow_between_two_sides_is_darcys(one, other, along, across):
     assert row["low flow in (m2/s)"] == pytest.approx(-exact, rel=0.0125)
 
 
+@pytest.mark.slow
 def test_flow_converges_and_falls_where_particles_behind_a_face_stay(monkeypatch):
     def flow():
         _, row = steady(scene(pair("left", "right", 0.2), numerics={"spacing": 0.025}), 0.6)

@@ -7,7 +7,7 @@ from nbclient.exceptions import CellExecutionError
 from tests.reference.folders import ROOT
 from tests.reference.notebooks import NOTEBOOKS, executed
 
-LONG = {"own_scene"}  # a minute
+LONG = {"own_scene", "own_force_and_probe"}  # half a minute and more
 
 
 def marked(path):

@@ -261,6 +261,7 @@ def test_new_offers_them_too(tree: Path, tmp_path: Path) -> None:
     assert all(name in text for name in NAMES.values())
 
 
+@pytest.mark.slow
 def test_a_contact_law_that_was_dropped_runs(tree: Path, tmp_path: Path) -> None:
     rows = []
     for law in ("linear", NAMES["law"]):

@@ -65,6 +65,7 @@ def states(run: Path) -> dict[str, bytes]:
     return found
 
 
+@pytest.mark.slow
 def test_a_run_names_its_law_and_goes_on_with_no_other(
     folder: Path, porescale: Callable[..., int], complaints: Callable[[], list[str]]
 ) -> None:

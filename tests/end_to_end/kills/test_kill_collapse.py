@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from porescale import build, load, open_run
 from porescale.common.record.checkpoint import read_checkpoint
@@ -141,6 +142,7 @@ def killed_by_the_clock(delay: float, hold: int, checkpoint: Path, *words: objec
         return process.returncode
 
 
+@pytest.mark.slow
 def test_killed_at_any_moment_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_path):
     # Between two steps, as above, no file is half written; by the clock one may be.
     out, dice = tmp_path / "killed", random.Random(3)

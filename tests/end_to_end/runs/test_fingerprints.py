@@ -85,6 +85,7 @@ def test_every_place_is_there() -> None:
         assert callable(places.fetch(place))
 
 
+@pytest.mark.slow
 def test_states_come_again_and_a_changed_record_is_found(tmp_path: Path) -> None:
     """A record made here, for bits hold on one kind of processor; that of the repository too where it is the same."""
     path = tmp_path / "recorded.json"

@@ -155,6 +155,7 @@ def test_the_checkpoint_is_the_state_of_the_simulation_at_its_end(folder, scene)
     assert simulation.series() == {name: column[-1] for name, column in open_run(folder).series.items()}
 
 
+@pytest.mark.slow
 def test_recording_more_often_does_not_change_the_run(folder, scene, porescale, tmp_path):
     often = tmp_path / "often"
     intervals = ("--set", "output.snapshot_interval=0.0012", "--set", "output.series_interval=4e-5")

@@ -54,6 +54,7 @@ def test_plain_gradients_make_angular_momentum():
     assert bodies.kept(corrected=False)[1] > 1e6 * tolerance("continuum.soil_momentum")
 
 
+@pytest.mark.slow
 def test_friction_of_thirty_degrees_by_its_tangent_slides_by_more():
     assert abs(slopes.strewn_friction(10, friction=3.0**-0.5) / 0.5 - 1.0) > 5.0 * slopes.HALF_DEGREE
 

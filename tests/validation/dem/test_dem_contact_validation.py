@@ -104,6 +104,7 @@ def test_a_budget_without_friction_does_not_close():
     assert abs(forgotten) > 0.1
 
 
+@pytest.mark.slow
 def test_the_same_discs_numbered_otherwise_have_other_bits():
     # Sums in another order differ: the sweep over blocks does not give the same bits by chance.
     law = law_at(0.1, **TANGENTIAL, tangential_damping=300.0)
