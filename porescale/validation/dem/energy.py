@@ -158,6 +158,7 @@ def driven() -> Measured:
     because="first order or better: 0.2 below one, since what walls and pushes err by has the other sign and has not"
     " gone at 50 steps",
     tolerance=0.2,
+    slow=True,
 )
 def driven_order() -> Measured:
     """Order at which the unaccounted energy falls, clumps alone and with all drives."""

@@ -96,6 +96,7 @@ def _kick_without_heat(v, acceleration, density, rate, material, length, lengths
     return kick(v, acceleration, density, rate, material, length, lengths, table, power, *rest)
 
 
+@pytest.mark.slow
 def test_a_tenth_more_tension_is_told_apart():
     jump = fluids.jump(20, seconds=0.3, tension=1.1 * fluids.TENSION)
     assert abs(jump - 1.0) > 2.0 * tolerance("continuum.young_laplace")
