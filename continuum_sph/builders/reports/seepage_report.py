@@ -25,7 +25,7 @@ RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two
 REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
 STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level
-STEADY = 1.4  # h over spacings from which on it does so for longer
+STEADY = 1.35  # h over spacings from which on it does so for a million and more
 STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
