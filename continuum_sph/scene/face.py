@@ -73,14 +73,15 @@ def face_faults(
 ) -> list[Fault]:
     """What is wrong with the faces of a tank of a ``size`` (width, height), m, with particles of a ``spacing``, m."""
     found, names = [], face_names(faces)
+    full = soil.body if soil is not None and soil.saturated else ()
+    if faces and not full:
+        found.append(Fault("face", "given", "needs ground whose pores are full",
+                           repair="add [soil] and soil.saturated = true"))  # fmt: skip
     for k, it in enumerate(faces):
         key = f"face[{k}]"
         wrong = it.faults(key, size, spacing)
         found += wrong
-        if soil is None or not soil.saturated:
-            found.append(Fault(key, "given", "needs ground whose pores are full",
-                               repair="add [soil] and soil.saturated = true"))  # fmt: skip
-        elif not wrong and not np.any([body.holds(it.along(size, spacing)) for body in soil.body], axis=0).all():
+        if full and not wrong and not np.any([body.holds(it.along(size, spacing)) for body in full], axis=0).all():
             found.append(Fault(key, it.side, "is not along ground all the way", repair="give start and end, or let "
                                "soil.body reach the side"))  # fmt: skip
         if it.side == "lid" and not lid:

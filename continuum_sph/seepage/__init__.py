@@ -42,7 +42,7 @@ grains (ψ = 0), has the conductivity k/n: such layers consolidate 1/n times too
 effect on the water.
 
 Parts: `Skeleton`, the soil as the water equations need it (`skeleton`);  `Overlap`, neighbours across layers
-(`overlap`);  `PoreFlow`, a `Flow` of water in it (`pores`);  `Drain`, faces of given pressure (`pressure_face`);
+(`overlap`);  `PoreFlow`, a `Flow` of water in it (`pores`);  `PressureFace`, faces of given pressure (`pressure_face`);
 `Supply`, water kept at levels (`reservoir`);  `Seepage`, both layers moving (`step`).
 """
 

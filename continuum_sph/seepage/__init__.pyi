@@ -1,6 +1,6 @@
 # The public names of continuum_sph.seepage: water in the pores of soil.
 from .pores import PoreFlow as PoreFlow
-from .pressure_face import Drain as Drain
+from .pressure_face import PressureFace as PressureFace
 from .reservoir import Reservoir as Reservoir
 from .reservoir import Supply as Supply
 from .resistance import Resistance as Resistance
@@ -9,4 +9,14 @@ from .skeleton import Skeleton as Skeleton
 from .skeleton import skeleton_of as skeleton_of
 from .step import Seepage as Seepage
 
-__all__ = ["Drain", "Frame", "PoreFlow", "Reservoir", "Resistance", "Seepage", "Skeleton", "Supply", "skeleton_of"]
+__all__ = [
+    "Frame",
+    "PoreFlow",
+    "PressureFace",
+    "Reservoir",
+    "Resistance",
+    "Seepage",
+    "Skeleton",
+    "Supply",
+    "skeleton_of",
+]

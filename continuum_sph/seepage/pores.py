@@ -21,7 +21,7 @@ from continuum_sph.seepage.mixture import (
     share_forces,
 )
 from continuum_sph.seepage.overlap import Overlap, Reach
-from continuum_sph.seepage.pressure_face import Drain, drain_walls, follow
+from continuum_sph.seepage.pressure_face import PressureFace, follow, prescribe_pressure
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.skeleton import Skeleton
 from continuum_sph.water.step import Flow
@@ -33,7 +33,7 @@ from porescale.common.core.types import Floats
 class PoreFlow(Flow):
     """Water of a law among the grains of a skeleton.
 
-    resistance : law of drag;  specific_weight (fluid,) N/m³, of several fluids, see `gather_soil`, or empty;  drains :
+    resistance : law of drag;  specific_weight (fluid,) N/m³, of several fluids, see `gather_soil`, or empty;  faces :
     faces of given pressure;  pores (15, fluid + LANES) what water particles have about them, see `mixture`;  borne
     (soil, 2) N/m, drag on the soil of the last half step;  heat (fluid + soil,) J/m, work that drag took from both
     layers.
@@ -43,7 +43,7 @@ class PoreFlow(Flow):
     overlap: Overlap = field(kw_only=True)
     resistance: Resistance = field(kw_only=True)
     specific_weight: Floats = field(default_factory=lambda: np.zeros(0), kw_only=True)
-    drains: list[Drain] = field(default_factory=list, kw_only=True)
+    faces: list[PressureFace] = field(default_factory=list, kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -58,7 +58,7 @@ class PoreFlow(Flow):
     def begin(self, step: float) -> float:
         """Begin a step as a flow of water alone does; particles behind open faces are moved with it."""
         layer, near = self.layer, self.near(self.law.smoothing.kind)
-        for face in self.drains:
+        for face in self.faces:
             follow(face.rows, near, layer.x, layer.v, layer.acceleration, *face.normal, step)
         return super().begin(step)
 
@@ -100,8 +100,8 @@ class PoreFlow(Flow):
             self.specific_weight, self.pores, Reach(*how),
         )  # fmt: skip
         mix_fluxes(layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, self.pores, *how)
-        for face in self.drains:
-            drain_walls(
+        for face in self.faces:
+            prescribe_pressure(
                 face.rows, face.pressure, self.near(smoothing.kind), layer.x, layer.record, layer.pressure, *face.point,
                 *face.normal,
             )  # fmt: skip

@@ -23,7 +23,7 @@ from porescale.common.core.types import Floats
 
 
 @dataclass
-class Drain:
+class PressureFace:
     """A face of given pressure.
 
     rows : (k,) numbers of its wall particles;  point : (x, y) m on it;  normal : (x, y) of unit length, into the
@@ -47,7 +47,7 @@ class Drain:
 
 
 @parallel_kernel
-def drain_walls(rows, given, near, x, record, pressure, ox, oy, nx, ny):
+def prescribe_pressure(rows, given, near, x, record, pressure, ox, oy, nx, ny):
     """Overwrites pressure and velocity of the wall particles ``rows`` (k,) in ``record`` and ``pressure`` (n,) Pa.
 
     given (k,) Pa;  near: see `water.bundles`;  x (n, 2) m;  (ox, oy), (nx, ny): a point of the face and its normal into

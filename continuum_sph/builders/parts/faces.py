@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.scene.face import FaceSection, face_names
-from continuum_sph.seepage import Drain, PoreFlow
+from continuum_sph.seepage import PoreFlow, PressureFace
 from continuum_sph.water.state import VX, VY
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
@@ -16,7 +16,9 @@ FARTHEST = 0.5
 """Spacings by which water may pass a face: no more particles come in."""
 
 
-def drain(section: FaceSection, x: Floats, walls: NDArray[np.int64], size: tuple[float, float], weight: float) -> Drain:
+def pressure_face(
+    section: FaceSection, x: Floats, walls: NDArray[np.int64], size: tuple[float, float], weight: float
+) -> PressureFace:
     """The face of a section in a tank of a ``size`` (width, height), m.
 
     x (n, 2) m: all particles;  walls : numbers of the wall particles of the tank, of which those in corners are none of
@@ -26,7 +28,7 @@ def drain(section: FaceSection, x: Floats, walls: NDArray[np.int64], size: tuple
     along, beyond = x[walls, axis], (x[walls, 1 - axis] - at) * inward
     own = (beyond < 0.0) & (along > max(start, 0.0)) & (along < min(end, size[axis]))
     point, normal = ((0.0, at), (0.0, inward)) if axis == 0 else ((at, 0.0), (inward, 0.0))
-    face = Drain(walls[own], point, normal, np.zeros(int(own.sum())))
+    face = PressureFace(walls[own], point, normal, np.zeros(int(own.sum())))
     face.hydrostatic(x, section.head, weight)
     return face
 
@@ -34,28 +36,28 @@ def drain(section: FaceSection, x: Floats, walls: NDArray[np.int64], size: tuple
 class FacePart(Part):
     """What flows through the faces of a scene.
 
-    sections, drains : the faces, in one order;  flow : of the water;  spacing : of its particles, m.
+    sections : of the faces of ``flow``, in its order;  flow : of the water;  spacing : of its particles, m.
     """
 
     def __init__(self, sections: Sequence[FaceSection], flow: PoreFlow, spacing: float) -> None:
         self.names = face_names(sections)
-        self.drains, self.flow, self.spacing = flow.drains, flow, spacing
-        self.outer = [face.rows[self._depth(face, flow.home) < spacing] for face in self.drains]
+        self.faces, self.flow, self.spacing = flow.faces, flow, spacing
+        self.outer = [face.rows[self._depth(face, flow.home) < spacing] for face in self.faces]
 
     @staticmethod
-    def _depth(face: Drain, x: Floats) -> Floats:
+    def _depth(face: PressureFace, x: Floats) -> Floats:
         """Depth (m) behind the face of its wall particles at ``x`` (n, 2) m."""
         depth: Floats = (np.array(face.point) - x[face.rows]) @ np.array(face.normal)
         return depth
 
-    def passed(self, face: Drain) -> float:
+    def passed(self, face: PressureFace) -> float:
         """The farthest way (m) that water has gone through a ``face``."""
         layer, home = self.flow.layer.x, self.flow.home
         return float(np.abs(self._depth(face, layer) - self._depth(face, home)).max())
 
     def check(self) -> None:
         """Raise Unstable when more water has passed a face than is there to pass it."""
-        for name, face in zip(self.names, self.drains, strict=True):
+        for name, face in zip(self.names, self.faces, strict=True):
             way = self.passed(face)
             if way > FARTHEST * self.spacing:
                 raise Unstable(
@@ -72,5 +74,5 @@ class FacePart(Part):
         record = self.flow.layer.record
         return {
             f"{name} flow in (m2/s)": float((record[rows, VX : VY + 1] @ np.array(face.normal)).sum() * self.spacing)
-            for name, face, rows in zip(self.names, self.drains, self.outer, strict=True)
+            for name, face, rows in zip(self.names, self.faces, self.outer, strict=True)
         }

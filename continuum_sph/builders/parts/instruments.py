@@ -18,7 +18,7 @@ from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
 
 SUPPORT = 2.0  # of the kernels, in smoothing lengths
-OPEN = 1 / 6  # of the grains that ground has: water about which there are fewer is in the open
+IN_THE_OPEN = 1 / 6  # of the grains that ground has: water about which there are fewer is in the open
 THIN = 1e-3  # of a mean square distance: particles on a line give no slope across it
 
 

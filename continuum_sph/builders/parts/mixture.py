@@ -10,7 +10,14 @@ from continuum_sph.builders.parts.air import AIR as GAS
 from continuum_sph.builders.parts.air import AirPart
 from continuum_sph.builders.parts.faces import FacePart
 from continuum_sph.builders.parts.held_soil import HeldSoilPart
-from continuum_sph.builders.parts.instruments import OPEN, MeasuredWater, discharge, level_row, open_depth, probe_row
+from continuum_sph.builders.parts.instruments import (
+    IN_THE_OPEN,
+    MeasuredWater,
+    discharge,
+    level_row,
+    open_depth,
+    probe_row,
+)
 from continuum_sph.builders.parts.phreatic import NAME, phreatic_row
 from continuum_sph.builders.parts.pore_water import seepage_flow
 from continuum_sph.builders.parts.reservoirs import ReservoirPart
@@ -150,7 +157,7 @@ class PoreInstruments(Part):
 
     def __init__(self, scene: Scene, flow: PoreFlow) -> None:
         self.probes, self.levels, self.flow, self.width = scene.probe, scene.level, flow, scene.inner[0]
-        self.open = 1.0 - OPEN * (1.0 - flow.resistance.porosity)
+        self.open = 1.0 - IN_THE_OPEN * (1.0 - flow.resistance.porosity)
 
     def row(self) -> dict[str, float]:
         """Mass of the water in pores.

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
-from continuum_sph.builders.parts.faces import drain
+from continuum_sph.builders.parts.faces import pressure_face
 from continuum_sph.builders.parts.held_soil import held_ground
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
@@ -147,7 +147,7 @@ def seepage_flow(scene: Scene) -> Seepage:
     )  # fmt: skip
     size, weight = (width, height), scene.water.density * scene.gravity
     of_tank = np.arange(len(x), layer.count - len(side))
-    flow.drains += [drain(it, layer.x, of_tank, size, weight) for it in scene.face]
+    flow.faces += [pressure_face(it, layer.x, of_tank, size, weight) for it in scene.face]
     if scene.air:
         flow.specific_weight = specific_weights(layer.material[: len(x)], law, flow.resistance.gravity)
     flow.lower[:] = 0.0

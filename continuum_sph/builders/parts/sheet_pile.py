@@ -98,8 +98,8 @@ def beside(
             continue
         near = (away > 0.0) & (away < WIDE) & (depth > BLURRED * spacing) & (depth < NEAR_TIP * buried)
         over = (away > 0.0) & (away < OPEN) & (depth < -BLURRED * spacing) & (depth > -OPEN * spacing)
-        level = float(head[over].mean()) if over.any() else top
-        level = level if known is None else known
+        found_above = float(head[over].mean()) if over.any() else top
+        level = found_above if known is None else known
         steep = steepness(depth[near] + 1j * spacing * away[near], head[near] - level, buried)
         found.append(steep / thickness_at_exit(min(1.0, buried / top), top / spacing))
     return float(np.fmax.reduce(found))

@@ -192,7 +192,9 @@ def steepest(scene: Scene) -> float:
     places = [it.along(scene.inner, spacing) for it in scene.face]
     for k, (one, at) in enumerate(zip(scene.face, places, strict=True)):
         for other, beyond in zip(scene.face[:k], places[:k], strict=True):
-            way = float(np.hypot(*(at[:, None] - beyond[None]).T).min())
+            # Both lie along sides of a rectangle: gaps between their ends on each axis.
+            gap = np.maximum(at[0] - beyond[-1], beyond[0] - at[-1])
+            way = float(np.hypot(*np.maximum(gap, 0.0)))
             if scene.pile and one.side == other.side == "lid":
                 way = max(way, 2.0 * (top - scene.pile.tip))
             found.append(abs(one.head - other.head) / max(way, spacing))

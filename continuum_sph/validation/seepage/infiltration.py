@@ -145,7 +145,7 @@ class Imbibition:
     def advance(self, both: Seepage) -> None:
         """One step, the face going along."""
         both.advance()
-        (face,) = both.water.drains
+        (face,) = both.water.faces
         behind = both.water.layer.x[face.rows, 1]
         layers = len(behind) // self.columns
         # Rows of the face lie half a spacing and more behind it

@@ -125,7 +125,7 @@ def ramp(column: Permeameter = BOILING) -> tuple[Floats, Floats, Floats]:
     rows = []
     while both.time < seconds:
         part = low + (high - low) * both.time / seconds
-        both.water.drains[0].pressure[:] = column.base(part * column.critical)
+        both.water.faces[0].pressure[:] = column.base(part * column.critical)
         both.advance()
         volume = soil.mass[:n] / soil.density
         upright = float((volume * soil.stress[:n, YY]).sum() / volume.sum()) / (0.5 * weight)

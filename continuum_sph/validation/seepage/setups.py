@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage, Skeleton, skeleton_of
+from continuum_sph.seepage import Frame, PoreFlow, PressureFace, Resistance, Seepage, Skeleton, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.soil import SoilFlow
 from continuum_sph.validation.soil.setups import RATIO
@@ -84,7 +84,7 @@ def water_in(
         below = face == "floor"
         rows = n + np.flatnonzero(walls[:, 1] < 0.0 if below else walls[:, 1] > height)
         normal = (0.0, 1.0 if below else -1.0)
-        flow.drains.append(Drain(rows, (0.0, 0.0 if below else height), normal, np.full(len(rows), held)))
+        flow.faces.append(PressureFace(rows, (0.0, 0.0 if below else height), normal, np.full(len(rows), held)))
     whole = resistance.porosity * WATER + (1.0 - resistance.porosity) * grains
     both = Seepage(flow, ground, modulus, whole if modulus else np.inf, load=load)
     both.start()

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipj, ellipk, ellipkinc, ellipkm1
 
-from continuum_sph.builders.parts.faces import drain
+from continuum_sph.builders.parts.faces import pressure_face
 from continuum_sph.builders.parts.sheet_pile import beside, sheet_pile
 from continuum_sph.scene.face import FaceSection
 from continuum_sph.scene.pile import SheetPileSection
@@ -75,8 +75,8 @@ def held_ground(
     )  # fmt: skip
     of_tank = np.arange(n, layer.count - len(side))
     for face in faces:
-        flow.drains.append(drain(face, layer.x, of_tank, size, WATER * GRAVITY))
-        flow.drains[-1].pressure[:] = WATER * GRAVITY * face.head
+        flow.faces.append(pressure_face(face, layer.x, of_tank, size, WATER * GRAVITY))
+        flow.faces[-1].pressure[:] = WATER * GRAVITY * face.head  # over water at rest, whose weight plays no part
     both = Seepage(flow, frame)
     both.start()
     mass[:n] = flow.porosity * WATER * spacing**2

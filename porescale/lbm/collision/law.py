@@ -89,19 +89,19 @@ def cell_law(x, law):
 
 @row_law.of(object)
 def _same_row(y, law):
-    """The law itself."""
+    """The law as it is: all rows of the lattice have one."""
     return law
 
 
 @part_law.of(object)
 def _same_part(first, last, law):
-    """The law itself."""
+    """The law as it is: all parts of a row have one."""
     return law
 
 
 @cell_law.of(object)
 def _same_cell(x, law):
-    """The law itself."""
+    """The law as it is: all cells of a part have one."""
     return law
 
 

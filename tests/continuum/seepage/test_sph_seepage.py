@@ -25,7 +25,7 @@ from continuum_sph.seepage.mixture import (
     share_forces,
 )
 from continuum_sph.seepage.overlap import Overlap, Reach, overlap_kernel, overlap_weights
-from continuum_sph.seepage.pressure_face import drain_walls
+from continuum_sph.seepage.pressure_face import prescribe_pressure
 from continuum_sph.seepage.resistance import drag, sharpened
 from continuum_sph.seepage.skeleton import show_soil, weigh
 from continuum_sph.water.bundles import Neighbours
@@ -272,7 +272,7 @@ def test_a_drained_face_holds_a_linear_pressure():
     start, split = np.array([0, 0, 0, 0, 0, 4, 8, 8]), np.array([0, 0, 0, 0, 4, 8, 8])
     partner = np.array([0, 1, 2, 3, 0, 1, 2, 3], np.int32)
     near = Neighbours(start, split, partner, None, None, WENDLAND, H)
-    drain_walls.py_func(rows, np.full(3, 300.0), near, x, record, pressure, 0.0, 0.0, 0.0, 1.0)
+    prescribe_pressure.py_func(rows, np.full(3, 300.0), near, x, record, pressure, 0.0, 0.0, 0.0, 1.0)
     np.testing.assert_allclose(pressure[4:6], 300.0 + 50.0 * x[4:6, 1], rtol=10 * eps)
     assert pressure[6] == 300.0  # no water near
     np.testing.assert_allclose(record[4:6, VY], 0.2, rtol=10 * eps)

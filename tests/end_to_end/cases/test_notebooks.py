@@ -14,6 +14,10 @@ def marked(path):
     return pytest.param(path, marks=pytest.mark.slow) if path.stem in LONG else path
 
 
+def test_every_long_notebook_is_one():
+    assert {path.stem for path in NOTEBOOKS} >= LONG
+
+
 @pytest.mark.parametrize("path", [marked(path) for path in NOTEBOOKS], ids=lambda path: path.stem)
 def test_a_notebook_runs(path, tmp_path):
     shown = [output for cell in executed(path, tmp_path).cells for output in cell.get("outputs", ())]
