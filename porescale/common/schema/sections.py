@@ -308,10 +308,10 @@ def _levels(table: Mapping[str, Any], chosen: str | None) -> tuple[dict[str, dic
     if level is not None and not isinstance(level, str):
         shown = level if isinstance(level, int | float) else None
         faults.append(Fault(key, shown, "is not the name of a level", "", ", ".join(LEVELS), 'write it as "draft"'))
-        level = None
+        level = next(iter(levels), None)
     elif level is not None and level not in levels:
         has = ", ".join(levels)
         repair = f"choose one of these or add [quality.{level}]" if has else f"add [quality.{level}] or leave it out"
         faults.append(Fault(key, level, "this scene has no such level", "", has or "none", repair))
-        level = None
-    return levels, level, faults
+        level = next(iter(levels), None)
+    return levels, level, faults  # with another level than the wrong one, what it would give is not missed as well

@@ -165,6 +165,13 @@ def test_a_scene_made_in_python_is_gone_on_with(kind, tmp_path, monkeypatch):
     assert package.run(short, progress=False).folder == Path("runs/scene")
 
 
+@pytest.mark.parametrize("given", ["rough", "peak"])
+def test_a_level_that_there_is_not_is_one_fault_and_what_it_would_give_is_not_missed(given):
+    with pytest.raises(InputError, match="no such level") as raised:
+        porescale.load("column_collapse", quality=given)
+    assert len(raised.value.faults) == 1
+
+
 def test_threads_that_there_are_not_are_refused():
     with pytest.raises(InputError, match=r"^threads = 0: is out of range"):
         porescale.set_threads(0)
