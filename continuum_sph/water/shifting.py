@@ -28,7 +28,7 @@ from continuum_sph.water.state import X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_four, gather_rows, maximum, reduce_add, sqrt, zeros
 
-OPEN = 1.5  # trace of M: 1.95 on a lattice, 1.2 in the outermost row of a level surface, 0.9 in a corner
+OPEN = 1.5  # trace of M: 1.97 on a lattice, 1.2 in the outermost row of a level surface, 0.9 in a corner
 MOST = 0.25  # of U
 QUIET = 1.0 / 500.0  # of the speed of sound: a settling lattice stays below it, and a flow of Mach 0.1 loses 2 % of U
 

@@ -14,6 +14,9 @@ from porescale.common.compiled.simd import maximum
 CUBIC, WENDLAND = 0, 1
 NAMES = ("cubic", "wendland")
 SUPPORT = 2.0  # smoothing lengths
+RATIO = 1.35
+"""Smoothing length over spacing where a scene names none: the least with which ground under water stands for a million
+steps and more (docs/theory/seepage.md, "Limits")."""
 
 
 @inline

@@ -6,7 +6,7 @@ Eq. 34 is ∇·(μ ∇v).  Where μ changes that is not the divergence of a stre
 that is strained bears half of 2μ ∂v_n/∂n, and two fluids that rotate as one slow each other down.  Friction between two
 fluids therefore acts along the line of centres, with the factor of two dimensions: ∇·μ(∇v + ∇vᵀ), by forces that exert
 no torque and always dissipate.
-On a square lattice of h = 1.3 spacings that is 14 % too stiff along the axes and 19 % too soft across; disordered
+On a square lattice of h = 1.35 spacings that is 13 % too stiff along the axes and 17 % too soft across; disordered
 particles have the mean.  (Adding ∇·(μ ∇vᵀ) from gradients in a second pass is the same on any lattice, but can make
 energy; it takes 2 % off the speed of Hysing's bubble.)  Source: Monaghan, Rep. Prog. Phys. 68 (2005) 1703; which form
 has which stress: Colagrossi et al., Phys. Rev. E 84 (2011) 026705.

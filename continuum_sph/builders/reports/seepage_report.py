@@ -17,6 +17,7 @@ from continuum_sph.scene.face import face_names
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
+from continuum_sph.water.smoothing import RATIO
 from porescale.common.api.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
@@ -24,8 +25,7 @@ from porescale.common.core.types import Floats
 RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
 REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
-STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level
-STEADY = 1.35  # h over spacings from which on it does so for a million and more
+STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level with less than `RATIO` spacings
 STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
@@ -59,10 +59,10 @@ def seepage_report(scene: Scene) -> Report:
     report_run(out, scene, "soil and water", 2 * len(soil), scene.time.end / step, RATE)
     report_output(out, scene.time.end, scene.output, round(scene.time.end / step), 1000.0 + 2.0 * SNAPSHOT * len(soil))
     report_origin(out, section.origin)
-    if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < STEADY:
+    if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < RATIO:
         out.warn(
             f"water at rest over ground keeps its level for some {STEPS} steps; then its lattice gives way, and it "
-            f"sinks by up to a hundredth of its depth; numerics.smoothing_ratio = {STEADY:g} mends it"
+            f"sinks by up to a hundredth of its depth; numerics.smoothing_ratio = {RATIO:g} mends it"
         )
     if scene.pile:
         pile_report(scene, out)

@@ -23,14 +23,13 @@ from scipy.integrate import solve_ivp
 from continuum_sph.builders.parts.air import AIR, specific_weights
 from continuum_sph.seepage import Frame, Resistance, Seepage
 from continuum_sph.validation.seepage.setups import COLUMNS, WATER, pore_flow
-from continuum_sph.validation.soil.setups import RATIO
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.eos.adiabatic import AdiabaticGas
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
-from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.smoothing import RATIO, Smoothing
 from continuum_sph.water.state import Layer
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats

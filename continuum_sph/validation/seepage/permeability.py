@@ -6,11 +6,10 @@ import numpy as np
 
 from continuum_sph.seepage import Frame, Resistance, Seepage
 from continuum_sph.validation.seepage.setups import WATER, pore_flow
-from continuum_sph.validation.soil.setups import RATIO
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
-from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.smoothing import RATIO, Smoothing
 from continuum_sph.water.state import Layer
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations

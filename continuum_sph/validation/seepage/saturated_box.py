@@ -8,11 +8,10 @@ import numpy as np
 from continuum_sph.seepage import Resistance, Seepage, skeleton_of
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.validation.seepage.setups import GRAINS, SKIN, WATER, pore_flow
-from continuum_sph.validation.soil.setups import RATIO
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
-from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.smoothing import RATIO, Smoothing
 from continuum_sph.water.state import Layer
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations

@@ -8,12 +8,11 @@ import numpy as np
 from continuum_sph.seepage import Frame, PoreFlow, PressureFace, Resistance, Seepage, Skeleton, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.soil import SoilFlow
-from continuum_sph.validation.soil.setups import RATIO
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
-from continuum_sph.water.smoothing import SUPPORT, Smoothing
+from continuum_sph.water.smoothing import RATIO, SUPPORT, Smoothing
 from continuum_sph.water.state import Layer
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList

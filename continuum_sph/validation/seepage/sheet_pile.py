@@ -15,13 +15,13 @@ from continuum_sph.seepage import Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.validation.seepage.setups import WATER
-from continuum_sph.validation.soil.setups import RATIO, SKIN
+from continuum_sph.validation.soil.setups import SKIN
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
-from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.smoothing import RATIO, Smoothing
 from continuum_sph.water.state import VX, VY, Layer
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats

@@ -9,12 +9,11 @@ import numpy as np
 from continuum_sph.builders.parts.soil import placed
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.soil.steadying import steadied
-from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.smoothing import RATIO, Smoothing
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
 
-RATIO = 1.3  # smoothing length over spacing
 SKIN = 0.15  # of the pair list, over the smoothing length
 TAN_PHI = 0.5  # of Maeda & Sakai 2004: τ_f = p tan φ; sin 30°
 DENSITY, STIFFNESS, POISSON = 1590.0, 2e6, 0.3  # kg/m³: grains of 2650 at n = 0.4; Pa
@@ -39,7 +38,7 @@ def in_tank(
 
     tilt : rad, of the floor: gravity leans to the right;  floor, sides : "hold" the soil or let it "slip", sides
     "none": endless soil, periodic across;  law : more of `SoilLaw`, with damping and diffusion as in a scene where not
-    given.  Wendland C2 with h = 1.3 spacings.
+    given.  Wendland C2, h of ``RATIO`` spacings.
     """
     lean = (gravity * math.sin(tilt), -gravity * math.cos(tilt))
     damping, diffusion = steadied(material, gravity, float(x[:, 1].max()) + 0.5 * spacing, RATIO * spacing)

@@ -17,7 +17,7 @@ from continuum_sph.unsaturated.outside import Level
 from continuum_sph.unsaturated.richards import EFFECTIVE, HEAD, properties_of, unity
 from continuum_sph.validation.unsaturated.richards import Column, VanGenuchtenMualem, relaxed
 from continuum_sph.water.bundles import Neighbours
-from continuum_sph.water.smoothing import SUPPORT, WENDLAND
+from continuum_sph.water.smoothing import RATIO, SUPPORT, WENDLAND
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
@@ -25,7 +25,7 @@ from porescale.common.neighbors import PairList, square_lattice
 
 VALIDATIONS = Validations()
 WATER = 1000.0  # kg/m³
-COLUMNS, RATIO = 8, 1.3
+COLUMNS = 8
 BEYOND = 3  # rows of places below and above the soil
 
 

@@ -8,7 +8,7 @@ from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
-from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.smoothing import RATIO, Smoothing
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow
 from porescale.common.core.types import Floats
@@ -61,7 +61,7 @@ def channel(
     length = 8 * spacing  # two cutoffs of 2h + skin and a little
     x = square_lattice((0.0, 0.0), (length, gap), spacing)
     walls = tank_walls(length, gap, spacing, layers, sides=False, lid=True)
-    smoothing = Smoothing("wendland", 1.3 * spacing)
+    smoothing = Smoothing("wendland", RATIO * spacing)
     law = Law(
         smoothing, spacing, (Fluid(Tait(density, sound_speed), viscosity * density),), (force, 0.0),
         diffusion=0.0, sticky=True, cut=False, corrected=corrected,
@@ -107,7 +107,7 @@ def channel_error(kind: str, across: int, viscosity_assumed: float = 1e-6, corre
     source="Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214, figure 1",
     because="walls hold a mean over the kernel, which slips by SPREAD h² u'', u'' = 8 V/gap²; left out: what goes as "
     "h³, 1e-3",
-    tolerance=SPREAD * 8.0 * (1.3 / 20) ** 2 + 1e-3,
+    tolerance=SPREAD * 8.0 * (RATIO / 20) ** 2 + 1e-3,
 )
 def poiseuille_row() -> Measured:
     """Largest error over the final speed, 20 particles across."""
@@ -119,7 +119,7 @@ def poiseuille_row() -> Measured:
     source="Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214, figure 3",
     because="the next term of the viscous sum, (SPREAD/2) h² ν u'''', adds (SPREAD/2) h²/(ν t) t² ∂²u/∂t², < 0.275 V, "
     "most at the first time",
-    tolerance=0.275 * 0.5 * SPREAD * (1.3 / 20) ** 2 / 0.0225,
+    tolerance=0.275 * 0.5 * SPREAD * (RATIO / 20) ** 2 / 0.0225,
 )
 def couette_row() -> Measured:
     """Largest error over the speed of the plate, 20 particles across."""

@@ -8,6 +8,7 @@ from continuum_sph.builders.parts.water import water_flow
 from continuum_sph.validation.water.kernels import LATTICE
 from continuum_sph.validation.water.setups import column_scene, run_until
 from continuum_sph.water.eos.liquid import Tait
+from continuum_sph.water.smoothing import RATIO
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
 
@@ -46,9 +47,9 @@ def hydrostatic_row() -> Measured:
 @VALIDATIONS.row(
     "continuum.water_stays_at_rest",
     source="exact: no motion; scale the speed of sound, 10 √(2 g H)",
-    because="a settling lattice leaves at most 2.6 % of g unbalanced; the widest pattern of a start that is its own "
-    "mirror image, k² = (2π/W)² + (π/H)², has 0.026 g/(ν k²), ν = α h c0/16 (half the pairs approach); c0² = 200 g H",
-    tolerance=LATTICE * 16.0 / (0.1 * 0.065 * 200.0) / ((2.0 * np.pi / 0.5) ** 2 + np.pi**2),
+    because="a settling lattice leaves at most 1.7 % of g unbalanced; the widest pattern of a start that is its own "
+    "mirror image, k² = (2π/W)² + (π/H)², has 0.017 g/(ν k²), ν = α h c0/16 (half the pairs approach); c0² = 200 g H",
+    tolerance=LATTICE * 16.0 / (0.1 * 0.05 * RATIO * 200.0) / ((2.0 * np.pi / 0.5) ** 2 + np.pi**2),
 )
 def rest_row() -> Measured:
     """Fastest particle over the speed of sound after 2 s."""
@@ -71,7 +72,7 @@ def long_hydrostatic_row() -> Measured:
     "continuum.water_stays_at_rest_for_ten_seconds",
     source="exact: no motion; scale the speed of sound, 10 √(2 g H)",
     because="as continuum.water_stays_at_rest, h 2.5 times smaller: with ν = α h c0/16 as much more speed is left",
-    tolerance=2.5 * LATTICE * 16.0 / (0.1 * 0.065 * 200.0) / ((2.0 * np.pi / 0.5) ** 2 + np.pi**2),
+    tolerance=2.5 * LATTICE * 16.0 / (0.1 * 0.05 * RATIO * 200.0) / ((2.0 * np.pi / 0.5) ** 2 + np.pi**2),
     slow=True,
 )
 def long_rest_row() -> Measured:

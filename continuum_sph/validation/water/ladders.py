@@ -1,6 +1,6 @@
 """Convergence of water: flows with exact answers at several spacings.  h is a fixed number of spacings.
 
-So sums over neighbours of a lattice keep an error of their own (2.6 % where gradients are not corrected), and no
+So sums over neighbours of a lattice keep an error of their own (1.7 % where gradients are not corrected), and no
 order is expected where it shows.
 """
 
@@ -68,7 +68,7 @@ def pressure(rows: float) -> float:
     title="Relative error of the period of a standing wave",
     along="particles in a wave",
     levels=(16, 32, 64),
-    because="no order is expected: gradient and divergence on a lattice are 2.6 % weak each at any spacing, and the"
+    because="no order is expected: gradient and divergence on a lattice are 1.7 % weak each at any spacing, and the"
     " error tends to that",
 )
 def sound(across: float) -> float:

@@ -6,7 +6,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
-from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.smoothing import RATIO, Smoothing
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow
 from porescale.common.core.constants import GRAVITY
@@ -58,7 +58,7 @@ def open_box(across: int, seed: int, *, alpha: float = 0.05, xsph: float = 0.0) 
     x = square_lattice((0.0, 0.0), (1.0, 1.0), spacing)
     x += rng.uniform(-0.2, 0.2, x.shape) * spacing
     v = rng.normal(0.0, 0.5, x.shape)
-    smoothing = Smoothing("wendland", 1.3 * spacing)
+    smoothing = Smoothing("wendland", RATIO * spacing)
     fluid = Fluid(Tait(density, 20.0), 1.0)
     law = Law(smoothing, spacing, (fluid,), (0.0, 0.0), alpha=alpha, beta=0.1, xsph=xsph, cut=False)
     layer = Layer(len(x), x, v, np.full(len(x), density * spacing**2), np.full(len(x), density))

@@ -10,6 +10,7 @@ from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.leapfrog import Pressing, pressurise
 from continuum_sph.water.pressure_walls import tank_walls
+from continuum_sph.water.smoothing import RATIO
 from continuum_sph.water.state import RHO, VOLUME
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError, Unstable
@@ -275,3 +276,7 @@ def test_rows_that_no_disk_holds_are_refused() -> None:
     table["time"]["end"], table["output"]["snapshot_interval"] = 1e6, 1e-9
     with pytest.raises(InputError, match=r"output\.snapshot_interval = 1e-09 s: makes \S+ snapshots, about \S+ GiB"):
         report(validate(type(scene()), table))
+
+
+def test_a_scene_that_names_no_smoothing_length_has_that_of_the_validations():
+    assert scene().numerics.smoothing_ratio == RATIO

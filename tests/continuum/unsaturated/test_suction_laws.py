@@ -7,7 +7,7 @@ from continuum_sph.unsaturated import VanGenuchten
 from continuum_sph.unsaturated.conductivity import relative_permeability
 from continuum_sph.unsaturated.retention import effective_saturation, pressure_and_slope
 from continuum_sph.unsaturated.richards import unity
-from continuum_sph.water.smoothing import WENDLAND
+from continuum_sph.water.smoothing import RATIO, WENDLAND
 from porescale.common.core.errors import InputError
 
 WEIGHT, STIFF = 9806.65, 6.25e5
@@ -71,6 +71,6 @@ def test_water_softer_than_its_suction_is_refused():
 
 
 def test_the_lattice_sum_of_second_derivatives_is_what_the_kernel_lacks():
-    # 1.95/2 of M on the lattice of Wendland's kernel with 1.3 spacings (`water.shifting`)
-    assert 1.0 / unity(WENDLAND, 1.3) == pytest.approx(1.95 / 2.0, rel=0.01)
+    # 1.97/2 of M on the lattice of Wendland's kernel with `RATIO` spacings (`water.shifting`)
+    assert 1.0 / unity(WENDLAND, RATIO) == pytest.approx(1.97 / 2.0, rel=0.01)
     assert unity(WENDLAND, 4.0) == pytest.approx(1.0, abs=1e-3)

@@ -10,6 +10,7 @@ from continuum_sph.validation.water.kernels import LATTICE
 from continuum_sph.water.eos.liquid import Tait, tait, tait_density
 from continuum_sph.water.smoothing import (
     CUBIC,
+    RATIO,
     WENDLAND,
     Smoothing,
     kernel_slope,
@@ -61,7 +62,7 @@ def test_plain_python_and_compiled_agree(kind):
 
 
 def test_lattice_weakness_of_the_gradient_is_the_number_the_validations_use():
-    h = 1.3
+    h = RATIO
     i, j = np.meshgrid(np.arange(-4, 5), np.arange(-4, 5))
     total = sum(-kernel_slope(WENDLAND, np.hypot(a, b) / h, h) * b * b for a, b in zip(i.flat, j.flat, strict=True))
     assert 1.0 - total == pytest.approx(LATTICE, abs=5e-5)  # its last digit
