@@ -27,8 +27,10 @@ def check_contact(scene: Scene) -> list[Fault]:
         faults += _check_kind(key, section, law_class(contact))
     if faults:
         return faults
+    walls = {} if contact.wall_friction is None else {"friction": contact.wall_friction}
     for key, section in sections[1 : 1 + len(scene.material)] or sections[:1]:
-        faults += _check_complete(key, merged(contact, section), contact)
+        numbers = merged(contact, section)
+        faults += _check_complete(key, numbers, contact) or _check_complete(key, numbers | walls, contact)
     return faults
 
 
@@ -112,7 +114,7 @@ def _check_complete(key: str, numbers: dict[str, float], contact: Contact) -> li
     if ways and sum(way in numbers for way in ways) != 1:
         problem, repair = "exactly one of the two is needed", "give one, leave the other out"
         faults.append(Fault(f"{key}.{', '.join(ways)}", None, problem, repair=repair))
-    wrong = law.rolling_problem(numbers)
+    wrong = law.friction_problem(numbers)
     if wrong:
         one, problem, repair = wrong
         faults.append(Fault(f"{key}.{one}", None, problem, "", "> 0", repair))

@@ -169,8 +169,8 @@ class Hertz:
         return replace(self, **given)  # type: ignore[arg-type]
 
     @staticmethod
-    def rolling_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
-        """Rolling stiffness and damping have values of their own where they are not given: nothing can be missing."""
+    def friction_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
+        """Tangential and rolling stiffness and damping have values of their own where they are not given: nothing can be missing."""
         return None
 
     @property

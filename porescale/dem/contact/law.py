@@ -143,8 +143,8 @@ class ContactLaw(Protocol):
         (m); and the power of the stiffness over overlap: what of it makes the overlap half as deep."""
 
     @staticmethod
-    def rolling_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
-        """What is wrong with the keys of rolling resistance: (key, problem, repair); None where nothing is."""
+    def friction_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
+        """What is wrong with the keys of friction and rolling resistance: (key, problem, repair); None where nothing is."""
 
 
 class Relative(NamedTuple):

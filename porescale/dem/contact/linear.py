@@ -134,8 +134,13 @@ class Linear:
         return replace(self, **given)  # type: ignore[arg-type]
 
     @staticmethod
-    def rolling_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
-        """Rolling resistance needs a spring or a dashpot, and friction; either without the other has no effect."""
+    def friction_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
+        """Friction bounds a tangential spring or dashpot, and has no effect without; rolling resistance needs a spring
+        or a dashpot, and friction."""
+        slides = numbers.get("tangential_stiffness", 0.0) + numbers.get("tangential_damping", 0.0) > 0.0
+        if not slides and numbers.get("friction", 0.0) > 0.0:
+            problem = "is needed where there is friction"
+            return "tangential_stiffness", problem, "give it, half of the normal one say, or leave friction out"
         resists = numbers.get("rolling_stiffness", 0.0) + numbers.get("rolling_damping", 0.0) > 0.0
         if resists == (numbers.get("rolling_friction", 0.0) > 0.0):
             return None

@@ -129,9 +129,9 @@ class OwnContact:
         return replace(self, frame=frame, numbers=own)
 
     @staticmethod
-    def rolling_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
+    def friction_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
         """As of the linear law."""
-        return Linear.rolling_problem(numbers)
+        return Linear.friction_problem(numbers)
 
     @property
     def friction(self) -> float:
