@@ -75,10 +75,10 @@ def plain_walls(fluid, start, split, partner, record, h, g):
 @parallel_kernel
 def plain_pairs(
     fluid, start, split, partner, record, acceleration, rate, smoothed, h, g, alpha, softening, delta, noise_speed,
-    sound, mu, xsph,
+    sound, mu, xsph, lattice,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), and ``smoothed`` (fluid, 2) if it is not None, as
-    `rates.rates`;  g: downwards;  xsph: ε, or None.
+    `rates.rates`;  g: downwards;  xsph: ε, or None;  lattice: of `parameters.Law`.
 
     Flat arguments: see `plain_drift`, 3 %.
     """
@@ -127,9 +127,9 @@ def plain_pairs(
             push = (own + record[j, P]) * specific * part
             wx -= push * dx
             wy -= push * dy
-        acceleration[i, 0] = reduce_add(ax) + wx
-        acceleration[i, 1] = reduce_add(ay) + wy - g
-        rate[i] = rho * (reduce_add(change) + swept) + delta * sound * reduce_add(spread)
+        acceleration[i, 0] = lattice * (reduce_add(ax) + wx)
+        acceleration[i, 1] = lattice * (reduce_add(ay) + wy) - g
+        rate[i] = rho * lattice * (reduce_add(change) + swept) + delta * sound * reduce_add(spread)
         if smoothed is not None:
             smoothed[i, 0] = strength * reduce_add(sx)
             smoothed[i, 1] = strength * reduce_add(sy)
@@ -195,6 +195,7 @@ class PlainColumn:
         plain_pairs(
             *where, self.acceleration, self._rate, self._smoothed, h, -law.gravity[1], law.alpha, law.softening,
             2.0 * law.diffusion * h, law.noise_speed, sound, law.fluids[0].viscosity, law.xsph or None,
+            law.lattice,
         )  # fmt: skip
         hardest = plain_kick(
             self.v, self.acceleration, self.density, self._rate, 0.5 * step, step, 0.8 * self.state.density

@@ -55,7 +55,8 @@ class Choices(NamedTuple):
     gravity_x, None where it is 0, and gravity_y, m/s²;  alpha, beta, None for 0, and softening: of artificial
     viscosity;  diffusion: 2 δ h of the density diffusion, m;  noise_speed, m/s: of `density.noise_scale`;  noise:
     what diffusion takes for noise, of `density`;  cohesive: None without cohesion;  xsph: ε of eq. 53, for
-    Σ (m_j/ρ̄)(v_j - v_i) W, the sign that smooths; None without XSPH.
+    Σ (m_j/ρ̄)(v_j - v_i) W, the sign that smooths; None without XSPH;  lattice: what plain sums are multiplied by,
+    `kernel_correction.lattice_gradient`; None with corrected ones.
     """
 
     gravity_x: Any
@@ -68,6 +69,7 @@ class Choices(NamedTuple):
     noise: Any
     cohesive: Any
     xsph: Any
+    lattice: Any
 
 
 class Walls(NamedTuple):

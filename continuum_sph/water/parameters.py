@@ -6,6 +6,7 @@ from functools import cached_property
 
 from continuum_sph.water.eos.law import StateLaw
 from continuum_sph.water.fluids import Fluid
+from continuum_sph.water.kernel_correction import lattice_gradient
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.viscosity import STIFFER
 
@@ -25,7 +26,8 @@ class Law:
     smoothing : kernel and h;  spacing : of the particles, m;  fluids : by the numbers that particles carry;
     gravity : (x, y) m/s²;  alpha, beta, softening : artificial viscosity;  diffusion : δ, and noise, what it takes for
     noise (`density.NAMES`), noise_speed (m/s) at which pairs close in noise that counts, 0: all does (`density`);
-    xsph : ε;  shifting : s;  corrected : gradients of `kernel_correction`;  varied : h follows density (eq. 52);
+    xsph : ε;  shifting : s;  corrected : gradients of `kernel_correction`, else plain ones times
+    ``lattice``;  varied : h follows density (eq. 52);
     filter_every : steps between filters of density (eq. 27), 0 never;  sticky : no-slip walls;  images : image walls
     (eqs 50, 51), else walls that take the pressure from the fluid;  tension : σ between two fluids, N/m;
     cut : no negative pressure;  courant : the 0.25 of eq. 49.
@@ -81,6 +83,11 @@ class Law:
             ),
             default=0.0,
         )
+
+    @cached_property
+    def lattice(self) -> float:
+        """What plain gradients are multiplied by: exact for linear fields on the square lattice of the start."""
+        return float(lattice_gradient(self.smoothing.kind, self.smoothing.length, self.spacing))
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:

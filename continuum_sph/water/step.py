@@ -136,6 +136,7 @@ class Flow:
             noise=law.noise,
             cohesive=cohesive,
             xsph=law.xsph or None,
+            lattice=None if law.corrected else law.lattice,
         )
 
     def near(self, kind: int | None) -> Neighbours:

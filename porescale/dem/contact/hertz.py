@@ -170,7 +170,7 @@ class Hertz:
 
     @staticmethod
     def friction_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
-        """Tangential and rolling stiffness and damping have values of their own where they are not given: nothing can be missing."""
+        """Stiffnesses and dampings that are not given have values of their own: nothing can be missing."""
         return None
 
     @property

@@ -144,7 +144,7 @@ class ContactLaw(Protocol):
 
     @staticmethod
     def friction_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
-        """What is wrong with the keys of friction and rolling resistance: (key, problem, repair); None where nothing is."""
+        """What is wrong with the keys of friction and rolling: (key, problem, repair); None where nothing is."""
 
 
 class Relative(NamedTuple):

@@ -35,7 +35,8 @@ def pair_sums(flow, half):
     several = len(law.fluids) > 1
     period = np.array(flow.pairs.period)
     mu = np.array([fluid.viscosity for fluid in law.fluids])[layer.material[:n] if several else np.zeros(n, int)]
-    matrix = layer.matrix if law.corrected else np.tile([1.0, 0.0, 1.0, 2.0], (layer.count, 1))
+    matrix = layer.matrix if law.corrected else np.tile([law.lattice, 0.0, law.lattice, 2.0], (layer.count, 1))
+    brake_by = 1.0 if law.corrected else law.lattice  # of artificial viscosity, which goes along the distance
     one = [np.array([[xx, xy], [xy, yy]]) for xx, xy, yy, _ in matrix]
     for i in range(n):
         apart = record[i, X : X + 2] - record[:, X : X + 2]
@@ -71,7 +72,7 @@ def pair_sums(flow, half):
         spread = (same * strength * brisk * (rho - record[j, RHO] + wanted) * volume * slope).sum()
         both = 0.5 * (rho + record[j, RHO])
         mu_ij = hij * np.minimum(approach, 0.0) / (r2 + law.softening * hij**2)
-        damp = (law.beta * mu_ij**2 - law.alpha * fluid.state.sound_speed * mu_ij) / both * mass * slope
+        damp = (law.beta * mu_ij**2 - law.alpha * fluid.state.sound_speed * mu_ij) / both * mass * slope * brake_by
         braking = slope * np.array([0.5 * np.trace(a) for a in mean])
         if several:
             joint = 2.0 * mu[i] * mu[j] / np.maximum(mu[i] + mu[j], 1e-300)
