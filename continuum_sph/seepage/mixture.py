@@ -7,8 +7,7 @@ Notation and derivation: `continuum_sph.seepage`.  What water finds about it of 
 import numpy as np
 
 from continuum_sph.seepage.overlap import overlap_kernel
-from continuum_sph.water.kernel_correction import lattice_gradient
-from continuum_sph.water.smoothing import CUBIC, kernel_kind, kernel_value
+from continuum_sph.water.smoothing import CUBIC, kernel_value
 from continuum_sph.water.state import BY_SHIFTING, COMPRESSIBILITY, RHO, VOLUME, VX, VY, X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_four, gather_rows, mask_tail, reduce_add, store, zeros
@@ -113,20 +112,17 @@ def mix_fluxes(fluid, start, split, partner, record, home, pores, h, period_x, p
 
 
 @parallel_kernel
-def open_gradients(fluid, pores, record, matrix, density, kernel, spacing, gx, gy):
+def open_gradients(fluid, pores, record, matrix, density, lattice, gx, gy):
     """Overwrites L of water particles in ``matrix`` (fluid, 4) and the gradient of ``density`` (fluid, 2) kg/m⁴, from
     which its diffusion takes departures, with those of water in the open as far as grains are few.
 
-    In the open L is that of the lattice at the start, for all (`water.kernel_correction`), and the gradient that of
+    In the open L is ``lattice``, that of water alone (`water.parameters.Law`), for all, and the gradient that of
     water at rest (`water.density`);  where grains take up GROUND or more both stay;  between them linear in their
-    share.  density: None where nothing diffuses;  record: see `water.state`;  kernel: kind and h (m);  spacing at the
-    start, m;  (gx, gy) m/s².
+    share.  density: None where nothing diffuses;  record: see `water.state`;  (gx, gy) m/s².
     """
-    kind, h = kernel
-    plain = lattice_gradient(kernel_kind(kind), h, spacing)
     for i in prange(fluid):
         share = min(1.0, (1.0 - pores[POROSITY, i]) / GROUND)
-        rest = (1.0 - share) * plain
+        rest = (1.0 - share) * lattice
         matrix[i, 0] = share * matrix[i, 0] + rest
         matrix[i, 1] *= share
         matrix[i, 2] = share * matrix[i, 2] + rest

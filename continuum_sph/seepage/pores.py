@@ -82,8 +82,7 @@ class PoreFlow(Flow):
         if self.law.corrected:
             law, layer = self.law, self.layer
             open_gradients(
-                layer.fluid, self.pores, layer.record, layer.matrix, self.gradients.density,
-                (self.kind, law.smoothing.length), law.spacing, *law.gravity,
+                layer.fluid, self.pores, layer.record, layer.matrix, self.gradients.density, law.lattice, *law.gravity
             )  # fmt: skip
         super().sum_pairs(half)
         if self.law.shifting > 0.0:

@@ -7,7 +7,8 @@ which keeps its forces opposite and its energies in balance.  Where neighbours l
 singular: L goes over to the unit tensor as the smaller eigenvalue of M falls from FULL to NONE.
 
 Water in the open that moves shrinks with L_i (12 to 24 % in four sloshes): plain sums push particles towards gaps twice
-as hard, and lose no volume.  So among grains alone water has L_i (`seepage.mixture.open_gradients`).
+as hard, and lose no volume.  So among grains alone water has L_i (`seepage.mixture.open_gradients`).  Plain sums over a
+lattice lack a share of their own, at any spacing; all particles have its inverse in common (`lattice_gradient`).
 """
 
 import numpy as np
@@ -41,8 +42,8 @@ def inverse(xx, xy, yy):
 
 @inline
 def lattice_gradient(kind, h, spacing):
-    """1/M of a square lattice, that multiplies plain sums so that gradients are exact on it: 1.017 of Wendland's kernel
-    at h = 1.35 spacings.  kind, h (m): of the kernel;  spacing, m."""
+    """1/M of a square lattice: plain sums times this have gradients that are exact on it.  1.017 of Wendland's kernel at
+    h = 1.35 spacings.  kind, h (m): of the kernel;  spacing, m."""
     whole = 0.0
     reach = int(SUPPORT * h / spacing) + 1
     for column in range(-reach, reach + 1):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from continuum_sph.validation.water.kernels import LATTICE, SPREAD
+from continuum_sph.validation.water.kernels import SPREAD
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
@@ -62,9 +62,9 @@ PHASE = 0.25 * WAVE  # ω Δt there: Δt = 0.25 h/c0, ω = 2π c0
 @VALIDATIONS.row(
     "continuum.sound_period",
     source="exact: L/c0",
-    because="gradient and divergence on a lattice are 1.7 % weak each, and smooth over h, SPREAD (2π h)² = 0.009 in "
-    "both together; the scheme's steps do less than (ωΔt)² = 0.004",
-    tolerance=1.0 / ((1.0 - LATTICE) * (1.0 - SPREAD * WAVE**2)) - 1.0 + PHASE**2,
+    because="gradient and divergence are exact on the lattice and smooth over h, SPREAD (2π h)² = 0.010 in both "
+    "together; the scheme's steps do less than (ωΔt)² = 0.004",
+    tolerance=1.0 / (1.0 - SPREAD * WAVE**2) - 1.0 + PHASE**2,
 )
 def sound_row() -> Measured:
     """Relative error of the period, 32 particles in a wave."""
