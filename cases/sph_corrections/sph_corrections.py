@@ -99,7 +99,6 @@ def main() -> int:
     numbers = {
         "vortices, both": found["both"][0],
         "vortices, plain gradients without shifting": found["Wendland, h 1.35"][0],
-        "plates, corrected gradients": found["corrected gradients"][1],
         "plates, plain gradients": found["Wendland, h 1.35"][1],
     }
     return conclude(HERE, numbers, figure, given.out)

@@ -11,6 +11,7 @@ import pytest
 
 from continuum_sph.validation.seepage import permeameter as verify_seepage
 from continuum_sph.validation.water import fluids as trials_fluids
+from continuum_sph.water.parameters import Law
 from porescale.output import case as cases
 from porescale.output.case import expected, missed
 from tests.reference.folders import CASES, script
@@ -64,18 +65,19 @@ def test_a_bar_of_clay_bears_its_own_turning_with_repulsion_and_not_without(conc
 
 def test_both_corrections_buy_what_their_case_says(concluded):
     case = "sph_corrections"
-    plain, corrected, both = "Wendland, h 1.3", "corrected gradients", "both"
-    numbers = concluded(case, change=only(METHODS=[plain, corrected, both]))
+    numbers = concluded(case, change=only(METHODS=["Wendland, h 1.35", "both"]))
     assert missed(CASES / case, numbers) == []
 
 
-def test_corrections_that_are_none_buy_nothing_and_those_that_are_change_what_is_plain(concluded):
-    # The twin that must fail: plain gradients in place of corrected ones, and both corrections in place of none.
+def test_sums_as_printed_miss_plates_and_corrections_that_are_none_miss_vortices(concluded, monkeypatch):
+    # The twin that must fail: no number for the lattice; no correction in place of both, and both in place of none.
     def change(module: Any) -> None:
-        plain, corrected, both = (module.METHODS[name] for name in ("Wendland, h 1.3", "corrected gradients", "both"))
-        assert corrected != plain
-        module.METHODS = {"Wendland, h 1.3": both, "corrected gradients": plain, "both": plain}
+        vortices = module.vortices
+        module.vortices = lambda name, *rest: vortices({"both": "Wendland, h 1.35"}.get(name, "both"), *rest)
+        module.METHODS = {name: module.METHODS[name] for name in ("Wendland, h 1.35", "both")}
         module.rest = lambda *_: (0.0, 0.0)  # no row speaks of it
+
+    monkeypatch.setattr(Law, "lattice", 1.0)
 
     case = "sph_corrections"
     assert missed(CASES / case, concluded(case, change=change)) == [row["name"] for row in expected(CASES / case)]
