@@ -83,6 +83,7 @@ def row(time: float, ratio: float, found: Measured, resolved: float) -> dict[str
     permeability (m²) : k of Darcy's law, by a flow that is driven through the bed, as the run's lattice has it
     permeability, narrow gaps resolved (m²) : the same by the solid operator for such gaps; nan if not steady
     permeability over hydraulic diameter² () : the same without unit
+    permeability over grain diameter² () : the same with d of the grains, as `permeability.wanted` has it
     hydraulic radius ratio () : radius that the fluid sees, over that of the grain; 1 where none is given
     hydraulic solid fraction () : of the radii that the fluid sees
     cells per hydraulic diameter () : resolution of the measurement
@@ -97,6 +98,7 @@ def row(time: float, ratio: float, found: Measured, resolved: float) -> dict[str
         "permeability (m²)": found.permeability,
         "permeability, narrow gaps resolved (m²)": resolved,
         "permeability over hydraulic diameter² ()": found.relative,
+        "permeability over grain diameter² ()": float(ratio) ** 2 * found.relative,
         "hydraulic radius ratio ()": float(ratio),
         "hydraulic solid fraction ()": c,
         "cells per hydraulic diameter ()": found.cells,

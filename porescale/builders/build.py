@@ -35,7 +35,7 @@ def build(scene: Scene) -> Simulation:
 def system_of(scene: Scene) -> System:
     """Fluid and grains of ``scene`` at time 0; raises InputError."""
     derived = derive(scene)
-    require_memory(derived)
+    require_memory(scene, derived)
     require_device_of(scene)
     made = System(scene, derived, Clock(derived.model_step), frames=frames_of(scene, derived))
     if scene.grains or scene.disc or scene.rectangle or scene.ring:

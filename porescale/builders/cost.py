@@ -23,13 +23,25 @@ SNAPSHOT = 1000.0
 """Bytes of a snapshot besides its numbers."""
 ALWAYS = 2.0**27
 """Bytes that the compiler of kernels takes itself: any machine has them, and the question takes time to ask."""
+COLUMNS = 12.0
+"""Numbers at each point of its fields in a snapshot: a density, a vector of three, tensors with their invariants."""
+FIELDS = 30.0
+"""Numbers at each point of [coarse_graining] while its fields are made: all that its sums keep."""
 SIDE = 10
 """What a side of a polygon costs, in discs, at the most (verify measures it)."""
 
 
-def memory(derived: Derived) -> float:
-    """Bytes that the simulation's arrays will take: populations, solid fields, patches, grains; an estimate."""
-    total = 400.0 * derived.grain_count
+def points(scene: Scene) -> float:
+    """Points at which [coarse_graining] takes its fields."""
+    if scene.coarse_graining is None:
+        return 0.0
+    return scene.domain.width * scene.domain.height / scene.coarse_graining.spacing**2
+
+
+def memory(scene: Scene, derived: Derived) -> float:
+    """Bytes that the simulation's arrays will take: populations, solid fields, patches, grains and their fields; an
+    estimate."""
+    total = 400.0 * derived.grain_count + 8.0 * FIELDS * points(scene)
     if derived.cells:
         nx, ny = derived.cells
         total += 9 * derived.precision * row_length(nx) * (ny + 2)
@@ -40,10 +52,11 @@ def memory(derived: Derived) -> float:
     return total
 
 
-def snapshot_bytes(derived: Derived) -> float:
-    """Bytes of a snapshot on disk, about: velocity, pressure and solid share of the cells, the grains' columns."""
+def snapshot_bytes(scene: Scene, derived: Derived) -> float:
+    """Bytes of a snapshot on disk, about: velocity, pressure and solid share of the cells, the grains' columns, their
+    fields."""
     cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
-    return SNAPSHOT + 20.0 * cells + 100.0 * derived.grain_count
+    return SNAPSHOT + 20.0 * cells + 100.0 * derived.grain_count + 4.0 * COLUMNS * points(scene)
 
 
 def snapshot_count(end: float, interval: float) -> int:
@@ -89,12 +102,16 @@ def seconds_on_gpu(derived: Derived, steps: int, bandwidth: float) -> float:
     return steps * (18 * derived.precision * nx * ny / bandwidth + contact_seconds(derived))
 
 
-def require_memory(derived: Derived) -> None:
+def require_memory(scene: Scene, derived: Derived) -> None:
     """Raise InputError when the arrays would not fit into this machine's memory."""
-    need = memory(derived)
+    need = memory(scene, derived)
     if need <= ALWAYS or need <= 0.9 * (have := memory_bytes()):
         return
     problem = f"needs {need / 2**30:.1f} of {have / 2**30:.1f} GiB"
+    if scene.coarse_graining and 8.0 * FIELDS * points(scene) > 0.5 * need:
+        wider = scene.coarse_graining.spacing * math.sqrt(need / (0.5 * have))
+        repair = f"points {wider:.2g} m apart take half of the memory"
+        raise InputError(Fault("coarse_graining.spacing", scene.coarse_graining.spacing, problem, "m", repair=repair))
     if derived.scales:
         coarser = derived.scales.spacing * math.sqrt(need / (0.5 * have))
         repair = f"a spacing of {coarser:.2g} m takes half of the memory"

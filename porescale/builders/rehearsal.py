@@ -32,7 +32,7 @@ def rehearsed(scene: Scene) -> AbstractContextManager[None]:
 
     def given() -> dict[str, Any] | None:
         """What the second process reads; None where it is not to be started."""
-        if on_card(scene) or (scene.run and scene.run.device != "cpu") or memory(derive(scene)) > LARGEST:
+        if on_card(scene) or (scene.run and scene.run.device != "cpu") or memory(scene, derive(scene)) > LARGEST:
             return None
         return {"scene": scene_as_dict(scene), "folder": str(scene.source.folder or ""), "threads": threads()}
 

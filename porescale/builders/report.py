@@ -44,7 +44,7 @@ SPHERES = 0.4
 def report(scene: Scene) -> Report:
     """All of the above; raises InputError with every refusal."""
     derived = derive(scene)
-    require_memory(derived)
+    require_memory(scene, derived)
     require_clear_packing(scene, derived)
     out = Report(scene.title or "scene")
     _parts(scene, out)
@@ -287,7 +287,7 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     seconds = told.total
     out.heading("Cost")
     out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
-    out.row("memory", memory(derived) / 2**20, "MiB")
+    out.row("memory", memory(scene, derived) / 2**20, "MiB")
     if device_of(scene) == "gpu" and derived.cells is not None:
         out.row("time on the CPU", told.seconds[STEPS], "s", told.known)
         seconds = _device(scene, derived, steps, told.seconds[STEPS], out)
@@ -298,4 +298,4 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
             f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "
             "longer steps, softer contacts or an earlier end shorten it"
         )
-    report_output(out, scene.time.end, scene.output, steps, snapshot_bytes(derived))
+    report_output(out, scene.time.end, scene.output, steps, snapshot_bytes(scene, derived))

@@ -126,7 +126,7 @@ def test_memory_is_what_the_arrays_take():
     simulation = build(column(grains__packing__settle=False))
     taken = simulation.fluid.populations.nbytes
     assert taken == 9 * 8 * 62 * 42
-    assert taken < cost.memory(derive(column())) < 3 * taken
+    assert taken < cost.memory(column(), derive(column())) < 3 * taken
 
 
 def test_scenes_cost_alike_whose_kind_is_the_same():
@@ -141,7 +141,9 @@ def kind_of(scene):
 
 
 def test_single_precision_takes_half_of_the_populations(monkeypatch):
-    double, single = (cost.memory(derive(column(fluid__precision=it))) for it in ("float64", "float32"))
+    double, single = (
+        cost.memory(it, derive(it)) for it in (column(fluid__precision=name) for name in ("float64", "float32"))
+    )
     assert double - single == 4 * (9 * 64 * 42 + 3 * 60 * 40)  # padded rows; three of the solid in a cell
 
 

@@ -311,13 +311,22 @@ def test_a_packing_is_held_while_it_settles():
 
 
 def test_a_lattice_beyond_the_memory_is_refused_with_a_spacing_that_fits(monkeypatch):
-    derived = derive(column())
-    cost.require_memory(derived)
+    scene = column()
+    derived = derive(scene)
+    cost.require_memory(scene, derived)
     monkeypatch.setattr(cost, "ALWAYS", 0.0)
     monkeypatch.setattr(cost, "memory_bytes", lambda: 4096)
-    line, *_ = refusals(lambda: cost.require_memory(derived))
+    line, *_ = refusals(lambda: cost.require_memory(scene, derived))
     assert line.startswith("fluid.spacing = ")
     assert "takes half of the memory" in line
+
+
+def test_fields_of_grains_beyond_the_memory_are_refused_with_a_distance_of_points_that_fits():
+    scene = column(coarse_graining={"spacing": 1e-8})
+    line, *_ = refusals(lambda: cost.require_memory(scene, derive(scene)))
+    assert line.startswith("coarse_graining.spacing = 1e-08 m: needs ")
+    coarse = column(coarse_graining={"spacing": float(line.partition("points ")[2].split()[0])})
+    assert cost.memory(coarse, derive(coarse)) < 0.6 * cost.memory_bytes()
 
 
 def test_a_channel_is_judged_by_the_speed_that_its_force_drives():

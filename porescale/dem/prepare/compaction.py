@@ -96,16 +96,20 @@ class Compactor:
         Raises InputError when that is so dense that they overlap by more than 2 % of a diameter.
         """
         grains, scale = self._start(radius)
+        fits, deepest = scale, 0.0
         while scale < 1.0:
             factor = min(1.0 + GROWTH, 1.0 / scale)
             self._grow(grains, factor, PAUSE)
             scale *= factor
-        deepest = 0.5 * max_overlap(grains).share
+            deepest = 0.5 * max_overlap(grains).share
+            if deepest <= DEEPEST:
+                fits = scale
         if deepest > DEEPEST:
             made = float(grains.discs.area.sum()) / self._region.area
-            problem = f"presses grains into each other by {deepest:.2g} of a diameter"
-            repair = "lower it, or the friction while preparing"
-            raise InputError(Fault("packing_fraction", round(made, 4), problem, "", f"< {made:.3g}", repair))
+            problem = f"is what these discs make, pressed into each other by {deepest:.2g} of a diameter"
+            repair = "lower packing_fraction, or the friction while preparing"
+            most = f"< {math.floor(100.0 * made * fits**2) / 100.0:g}"
+            raise InputError(Fault("packing_fraction", round(made, 4), problem, "", most, repair))
         for law in (self._preparing, self.law):
             grains.set_law(law, law.with_friction(0.0) if law is not self.law else law)
             self._rest(grains)

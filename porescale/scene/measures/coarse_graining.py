@@ -19,7 +19,7 @@ class CoarseGraining(Section):
 
     spacing: float = quantity("m", **LENGTH, help="distance between the points at which fields are taken, about")
     width: float | None = quantity(
-        "m", None, **LENGTH, help="radius within which a grain is felt (default: 2.5 mean diameters)"
+        "m", None, **LENGTH, help="radius within which a grain is felt (default: 2.5 mean diameters, or 1.5 largest)"
     )
     fields: tuple[GrainField, ...] = pydantic.Field(
         ("solid_fraction", "velocity", "stress"), min_length=1, description="which fields"

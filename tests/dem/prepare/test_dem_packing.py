@@ -85,7 +85,7 @@ def test_a_size_gives_its_fraction_and_too_much_of_it_is_refused():
     np.testing.assert_allclose(made.grains.discs.radius, small, rtol=1e-12)  # hundreds of factors, each rounded
     assert made.fraction == pytest.approx(0.78, rel=1e-11)
     assert mean_stress(made.grains) < 1.0  # looser than jamming: nothing presses
-    with pytest.raises(InputError, match=r"packing_fraction.*presses grains into each other"):
+    with pytest.raises(InputError, match=r"packing_fraction.*pressed into each other"):
         press.to_size(sizes() * np.sqrt(0.95 * SIZE[0] * SIZE[1] / area))
     with pytest.raises(InputError, match=r"pressure.*raise contact.stiffness"):
         press.to_pressure(small, 1e5)
