@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from porescale.builders.checks.flows import check_flows
+from porescale.builders.checks.flows import check_flows, forced_speed, pressed_speed
 from porescale.builders.checks.held_places import narrow_gap
 from porescale.builders.checks.limits import (
     CELLS_THICK,
@@ -23,14 +23,13 @@ from porescale.builders.checks.limits import (
     slow,
     thin,
 )
-from porescale.builders.checks.own_laws import inflow_peak, largest_force
+from porescale.builders.checks.own_laws import inflow_peak
 from porescale.builders.checks.sound import check_gate, check_inflows, check_pistons, check_sound
 from porescale.builders.initial.clumps import least_density
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.fluid_options import collision_options, weight_of
 from porescale.builders.initial.frames import Placed
 from porescale.builders.initial.placed import by_hand
-from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
 from porescale.coupling.solid.choose import SOLID_OPERATORS
@@ -39,7 +38,6 @@ from porescale.lbm.collision.choose import choose
 from porescale.lbm.scales import Scales
 from porescale.scene.bodies.rectangle import Rectangle
 from porescale.scene.bodies.segments import Container
-from porescale.scene.domain import Domain
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
 
@@ -57,8 +55,8 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
     fluid), reduced by buoyancy; over a periodic side, which has no end, for as long as the run lasts.  In fluid the
     terminal speed of a grain if that is less, and for a packing that of the gravity current it can become,
     sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin 1968): grains that fall together fall faster than each alone.
-    Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down; under a
-    difference of pressure the same, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
+    Fluid under a body force: see `forced_speed`; under a difference of pressure the parabola between the walls across
+    it, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
     """
     g, speed = math.hypot(*scene.gravity), max(given_speed(scene), _framed_speed(scene.container, frames))
     if scene.grains and sizes:
@@ -76,11 +74,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
                 free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * height))
         speed = max(speed, free)
     if scene.fluid and scales:
-        force = scene.fluid.body_force
-        push = (largest_force(scene) if isinstance(force, OwnLaw) else math.hypot(*force)) / scales.density
-        across = min(scene.domain.width, scene.domain.height)
-        speed = max(speed, push * across**2 / (8 * scales.viscosity))
-        speed = max(speed, _pressed_speed(scene.domain, scales))
+        speed = max(speed, forced_speed(scene, scales), pressed_speed(scene.domain, scales))
     return speed
 
 
@@ -99,17 +93,6 @@ def given_speed(scene: Scene) -> float:
     if scene.gate and scene.gate.lift_speed:
         speeds.append(scene.gate.lift_speed)
     return max(speeds)
-
-
-def _pressed_speed(d: Domain, scales: Scales) -> float:
-    """Speed (m/s) that the largest difference of pressure between sides can drive."""
-    held = {name: side.pressure or 0.0 for name, side in d.sides.items() if "pressure" in side.boundary.numbers}
-    if len(held) < 2:
-        return 0.0
-    drop = max(held.values()) - min(held.values())
-    along, across = (d.width, d.height) if {"left", "right"} <= set(held) else (d.height, d.width)
-    parabola = drop / along / scales.density * across**2 / (8 * scales.viscosity)
-    return min(parabola, math.sqrt(2 * drop / scales.density))
 
 
 def _framed_speed(containers: Sequence[Container], frames: Sequence[Placed]) -> float:
