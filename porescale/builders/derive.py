@@ -21,7 +21,7 @@ from porescale.builders.initial.clumps import lightest
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, longest_of, placed_frames, sizes_of
 from porescale.builders.initial.packing import radii_of
-from porescale.builders.initial.placed import by_hand, placed
+from porescale.builders.initial.placed import by_hand, packed_count, placed
 from porescale.builders.initial.rock import rock_frames
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
@@ -167,15 +167,7 @@ def fluid_scales(fluid: Fluid) -> Scales:
 
 def grain_count(scene: Scene) -> int:
     """Number of grains and discs that are held."""
-    placed = len(scene.disc) + len(by_hand(scene))
-    packing = scene.grains.packing if scene.grains else None
-    if packing is None or (scene.rock and scene.rock.polygons):
-        return placed
-    radii = radii_of(packing)
-    if radii is not None:
-        return placed + len(radii)
-    area = math.pi / 4 * packing.diameter**2 * (1 + packing.size_spread**2 / 3)
-    return placed + max(1, round(packing.packing_fraction * packing.width * packing.height / area))
+    return len(scene.disc) + len(by_hand(scene)) + packed_count(scene)
 
 
 def diameters(scene: Scene, *, held: bool = True) -> tuple[float, float, float] | None:

@@ -7,6 +7,8 @@ import pytest
 from porescale.builders.build import build
 from porescale.builders.checks.regime import column_height, fall, terminal_speed
 from porescale.builders.derive import derive
+from porescale.builders.initial.frames import placed_frames
+from porescale.builders.initial.placed import controls_by_hand
 from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from tests.reference.scenes import column, dry, grain, water
@@ -70,6 +72,42 @@ def test_a_light_grain_rises():
     assert fall(scene, -1.0) == (pytest.approx(0.006, rel=1e-12), False)
     drag = terminal_speed(0.001, 0.1 * 9.81, 2e-6)
     assert derive(scene).speed == pytest.approx(min(math.sqrt(2 * (1000 / 900 - 1) * 9.81 * 0.006), drag), rel=1e-12)
+
+
+STILL = {"x": {"velocity": 0}, "y": {"displacement": 0}, "rotation": {"velocity": 0}}
+
+
+def test_what_is_prescribed_along_gravity_does_not_fall():
+    # Said to fall with 0.2 m/s before, in water and dry; across gravity alone, or pushed, it falls.
+    still = [{"grain": 0, **STILL}]
+    assert derive(dry(**DRY, control=still)).speed == derive(column(**ONE, control=still)).speed == 0.0
+    for free in ({"x": {"velocity": 0}}, {"y": {"force": 0.1}}, {}):
+        falls = derive(dry(**DRY, control=[{"grain": 0, **free}])).speed
+        assert falls == pytest.approx(math.sqrt(2 * 9.81 * 0.002), rel=1e-12)
+    two = {"density": 2500, "grain": [grain(0.003, 0.002), grain(0.009, 0.004)]}
+    assert derive(dry(grains=two, control=still)).speed == pytest.approx(math.sqrt(2 * 9.81 * 0.004), rel=1e-12)
+    sides = {"domain__bottom": "periodic", "domain__top": "periodic"}  # nor for ever
+    assert derive(dry(**DRY, **sides, control=still)).speed == 0.0
+
+
+def test_a_prescribed_clump_or_polygon_does_not_fall():
+    # Numbers count bodies, not discs.
+    clump = {"discs": [[-0.0003, 0, 0.0004], [0.0003, 0, 0.0004]], "at": [[0.003, 0.002], [0.003, 0.006]]}
+    polygon = {"corners": [[0, 0], [0.001, 0], [0.001, 0.001]], "at": [[0.008, 0.003]], "thickness": 1e-4}
+    bodies = {"grains": {"density": 2500}, "clump": [clump], "polygon": [polygon]}
+    upper = dry(**bodies, control=[{"clump": 1, **STILL}, {"polygon": 0, **STILL}])
+    assert fall(upper, 1.0, placed_frames(upper))[0] == pytest.approx(0.002, rel=1e-12)
+    assert fall(dry(**bodies), 1.0)[0] == pytest.approx(0.006, rel=1e-12)
+    every = dry(**bodies, control=[{"clump": k, **STILL} for k in range(2)] + [{"polygon": 0, **STILL}])
+    assert fall(every, 1.0, placed_frames(every)) == (0.0, False)
+
+
+def test_grains_placed_by_hand_are_numbered_after_those_of_the_packing():
+    scene = column(grains__grain=[grain(0.003, 0.002)], control=[{"grain": 31, **STILL}])
+    assert build(scene).grains.discs.position[31] == pytest.approx([0.003, 0.002], abs=1e-15)
+    assert controls_by_hand(scene) == list(scene.control)
+    packed = column(grains__grain=[grain(0.003, 0.002)], control=[{"grain": 30, **STILL}])
+    assert controls_by_hand(packed) == [None]
 
 
 def test_the_height_of_a_packing_is_along_gravity():

@@ -29,13 +29,14 @@ from porescale.builders.initial.clumps import least_density
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.fluid_options import collision_options, weight_of
 from porescale.builders.initial.frames import Placed
-from porescale.builders.initial.placed import by_hand
+from porescale.builders.initial.placed import by_hand, controls_by_hand
 from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.dem.sanity import WORST_OF_TRAVELLING_CORNERS, WORST_TRAVEL
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.scales import Scales
+from porescale.scene.bodies.control import Controlled
 from porescale.scene.bodies.rectangle import Rectangle
 from porescale.scene.bodies.segments import Container
 from porescale.scene.packing import Packing
@@ -109,7 +110,8 @@ def _framed_speed(containers: Sequence[Container], frames: Sequence[Placed]) -> 
 
 def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[float, bool]:
     """How far (m) a grain can go along gravity (``sense`` 1) or against it (-1), and whether a periodic side makes
-    that endless.  From a grain's centre, or the far edge of the packing, to the last corner of the box.
+    that endless.  From a grain's centre, or the far edge of the packing, to the last corner of the box.  A body whose
+    motion along gravity is prescribed does not fall.
     """
     g = math.hypot(*scene.gravity)
     if g == 0 or scene.grains is None:
@@ -117,13 +119,32 @@ def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[flo
     along = [sense * component / g for component in scene.gravity]
     d = scene.domain
     unending = any(component != 0 and endless for component, endless in zip(along, d.periodic, strict=True))
-    starts = [(grain.x, grain.y) for grain in by_hand(scene)]
-    starts += [corner for it in frames if it.free for corner in it.frame.corners]
+    held = controls_by_hand(scene)
+    starts = [(it.x, it.y) for it, by in zip(by_hand(scene), held, strict=True) if not _borne(scene, by)]
+    starts += [corner for it in _falling(scene, frames) for corner in it.frame.corners]
     if packing := scene.grains.packing:
         right, top = packing.left + packing.width, packing.bottom + packing.height
         starts += [(x, y) for x in (packing.left, right) for y in (packing.bottom, top)]
+    if not starts:
+        return 0.0, False
     last = sum(max(0.0, component * size) for component, size in zip(along, (d.width, d.height), strict=True))
     return max([0.0, *(last - (along[0] * x + along[1] * y) for x, y in starts)]), unending
+
+
+def _borne(scene: Scene, by: Controlled | None) -> bool:
+    """Whether a control prescribes the motion of a body along gravity."""
+    if by is None:
+        return False
+    return all(axis.prescribes for axis, pull in zip((by.x, by.y), scene.gravity, strict=True) if pull != 0.0)
+
+
+def _falling(scene: Scene, frames: Sequence[Placed]) -> list[Placed]:
+    """The frames that are free to move along gravity."""
+    given, found = {it.of: it for it in scene.control}, []
+    for kind in ("segment", "polygon", "rock"):
+        same = [it for it in frames if it.kind == kind]
+        found += [it for k, it in enumerate(same) if it.free and not _borne(scene, given.get((kind, k)))]
+    return found
 
 
 def travel_step(scene: Scene, speed: float, radius: float, frames: Sequence[Placed] = ()) -> float:
