@@ -12,10 +12,10 @@ from porescale.builders.checks.contact import material_doubts
 from porescale.builders.checks.discs_alone import left_out, uncertain_films
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
-from porescale.builders.checks.numbers import check_controls
 from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
 from porescale.builders.checks.packing import check_compressed
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
+from porescale.builders.checks.prescribed import check_controls, check_motions
 from porescale.builders.checks.regime import check_regime, expected_speed, travel_step
 from porescale.builders.initial.clumps import lightest
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
@@ -129,6 +129,8 @@ def derive(scene: Scene) -> Derived:
             allowed = f"0 to {free - 1}" if free else "none: there are no grains"
             faults.append(Fault("loads.grains", number, "there is no such grain", "", allowed))
     check_controls(scene, free, faults)
+    if not faults:
+        check_motions(scene, faults)
     if faults:
         raise InputError(faults)
     return Derived(

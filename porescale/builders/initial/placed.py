@@ -44,7 +44,7 @@ def by_hand(scene: Scene) -> list[Grain | Member]:
 
 
 def packed_count(scene: Scene) -> int:
-    """Number of discs of the packing; an estimate, by their mean area, where sizes are drawn as the grains are placed."""
+    """Number of discs of the packing; an estimate by their mean area where sizes are drawn as they are placed."""
     packing = scene.grains.packing if scene.grains else None
     if packing is None or (scene.rock and scene.rock.polygons):
         return 0
