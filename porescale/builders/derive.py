@@ -16,7 +16,7 @@ from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
 from porescale.builders.checks.packing import check_compressed
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.builders.checks.prescribed import check_controls, check_motions
-from porescale.builders.checks.regime import check_regime, expected_speed, travel_step
+from porescale.builders.checks.regime import check_regime, expected_speed, too_soft, travel_step
 from porescale.builders.initial.clumps import lightest
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, longest_of, placed_frames, sizes_of
@@ -111,6 +111,7 @@ def derive(scene: Scene) -> Derived:
                 f"{WORST_TRAVEL:g} of the smallest radius in it, or a corner {WORST_OF_TRAVELLING_CORNERS:g} of its "
                 f"thickness, where a run stops; {SAFETY * travel:.2g} s is safe"
             )
+        warnings += filter(None, [too_soft(scene, scales, sizes, (law, wall_law), frames)])
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and law:
