@@ -1,5 +1,6 @@
 """How fast body forces and pressures can drive a fluid; and what it cannot do as its sides, gravity and step ask: fill
-a box without outlet, flow by a gravity that pressure balances, and begin to flow with too long a relaxation time."""
+a box without outlet or a gap that a rectangle opens, flow by a gravity that pressure balances, and begin to flow with
+too long a relaxation time."""
 
 import math
 from typing import NamedTuple
@@ -11,6 +12,7 @@ from porescale.builders.initial.placed import by_hand
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.errors import Fault
 from porescale.lbm.scales import Scales
+from porescale.scene.bodies.rectangle import Rectangle
 from porescale.scene.domain import Domain
 from porescale.scene.scene import Scene
 
@@ -22,6 +24,8 @@ after a tenth of the time in which it spreads over 30 cells, is off by 0.2 % at 
 relaxation times, and by 1.2, 4.4 and 25 % with one (lbm.begun_couette)."""
 
 
+EDGE = 1e-9
+"""Relative slack of edges that touch."""
 GAP_PEAK = 1.5
 """Largest over mean velocity of the parabola in a gap between two solids."""
 ENDS = ("left", "right"), ("bottom", "top")
@@ -176,7 +180,7 @@ def _past_free_grains(scene: Scene, scales: Scales, axis: int) -> float:
 
 
 def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault], warnings: list[str]) -> None:
-    """Refuse or warn of the three;  solids : whether any are in the fluid, whose drag has a limit of its own."""
+    """Refuse or warn of the four;  solids : whether any are in the fluid, whose drag has a limit of its own."""
     filled = filled_by(scene)
     if abs(filled) > FILLED_WARN:
         what = f"the sides let {abs(filled):.2g} of the fluid {'in' if filled > 0 else 'out'} until time.end, and none"
@@ -185,6 +189,7 @@ def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault],
             faults.append(Fault("domain", None, f"{what} lets it {way}", repair=repair))
         else:
             warnings.append(f"{what} lets it {way}: the density changes by as much; {repair}")
+    _check_gaps(scene, scales, faults, warnings)
     _check_tilt(scene, scales, warnings)
     if not solids and scales.relaxation_time > LONGEST_ALONE:
         step = (LONGEST_ALONE - 0.5) / 3 * scales.spacing**2 / scales.viscosity
@@ -192,6 +197,57 @@ def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault],
             f"relaxation time {scales.relaxation_time:.3g}: above {LONGEST_ALONE:g} flows that change with time are"
             f" off; a step of {0.99 * step:.2g} s keeps it below"
         )
+
+
+def _check_gaps(scene: Scene, scales: Scales, faults: list[Fault], warnings: list[str]) -> None:
+    """Refuse or warn of rectangles that open a gap behind them which no fluid comes into: what is in it is spread over
+    a longer one, or there is nothing at all where they began at a side."""
+    for k, it in enumerate(scene.rectangle):
+        for axis, size in enumerate((scene.domain.width, scene.domain.height)):
+            before, after = _gap_behind(scene, it, axis)
+            if after - before < 0.5 * scales.spacing or (falls := 1.0 - before / after) < FILLED_WARN:
+                continue  # less than half a cell is no gap
+            side, gone = _behind(it, axis), abs(it.travelled(scene.time.end)[axis])
+            first = f"lower.{'xy'[axis]} <= {-gone:.3g} m"
+            if it.velocity[axis] < 0.0:
+                first = f"upper.{'xy'[axis]} >= {size + gone:.3g} m"
+            what = f"moves away from the {side} side, which lets no fluid in: the gap behind it grows from"
+            what += f" {before:.3g} to {after:.3g} m, and the density in it falls by {falls:.2g}"
+            if falls > DENSITY_REFUSE:
+                faults.append(Fault(f"rectangle[{k}]", None, what, repair=f"let it begin outside, with {first}"))
+            else:
+                warnings.append(f"rectangle {k} {what}; let it begin outside, with {first}")
+
+
+def _behind(it: Rectangle, axis: int) -> str:
+    """The side that a rectangle moves away from along ``axis``."""
+    return ENDS[axis][0 if it.velocity[axis] > 0.0 else 1]
+
+
+def _gap_behind(scene: Scene, it: Rectangle, axis: int) -> tuple[float, float]:
+    """Lengths (m), at the start and the end, of the gap between a side and a rectangle that moves away from it along
+    ``axis`` and reaches from one of the sides across to the other; (0, 0) where fluid comes in, or another rectangle
+    is in it."""
+    d, across = scene.domain, 1 - axis
+    size = d.width, d.height
+    spans = it.lower[across] <= EDGE * size[across] and it.upper[across] >= (1 - EDGE) * size[across]
+    if not it.velocity[axis] or it.velocity[across] or not spans:
+        return 0.0, 0.0
+    if not d.side(_behind(it, axis)).boundary.closed or any(d.side(name).open for name in ENDS[across]):
+        return 0.0, 0.0
+
+    def from_side(other: Rectangle) -> tuple[float, float]:
+        """How far from the side a rectangle begins and ends, m."""
+        if it.velocity[axis] > 0.0:
+            return other.lower[axis], other.upper[axis]
+        return size[axis] - other.upper[axis], size[axis] - other.lower[axis]
+
+    first = from_side(it)[0]
+    others = [from_side(other) for other in scene.rectangle if other is not it]
+    if any(begin < first and end > 0.0 for begin, end in others):
+        return 0.0, 0.0
+    gone = abs(it.travelled(scene.time.end)[axis])
+    return max(first, 0.0), min(max(first + gone, 0.0), size[axis])
 
 
 def _check_tilt(scene: Scene, scales: Scales, warnings: list[str]) -> None:
