@@ -12,16 +12,16 @@ from porescale.builders.checks.contact import material_doubts
 from porescale.builders.checks.discs_alone import left_out, uncertain_films
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
-from porescale.builders.checks.numbers import check_controls
 from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
 from porescale.builders.checks.packing import check_compressed
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
-from porescale.builders.checks.regime import check_regime, expected_speed, travel_step
+from porescale.builders.checks.prescribed import check_controls, check_motions
+from porescale.builders.checks.regime import check_regime, expected_speed, too_soft, travel_step
 from porescale.builders.initial.clumps import lightest
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, longest_of, placed_frames, sizes_of
 from porescale.builders.initial.packing import radii_of
-from porescale.builders.initial.placed import by_hand, placed
+from porescale.builders.initial.placed import by_hand, packed_count, placed
 from porescale.builders.initial.rock import rock_frames
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
@@ -111,6 +111,7 @@ def derive(scene: Scene) -> Derived:
                 f"{WORST_TRAVEL:g} of the smallest radius in it, or a corner {WORST_OF_TRAVELLING_CORNERS:g} of its "
                 f"thickness, where a run stops; {SAFETY * travel:.2g} s is safe"
             )
+        warnings += filter(None, [too_soft(scene, scales, sizes, (law, wall_law), frames)])
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and law:
@@ -129,6 +130,8 @@ def derive(scene: Scene) -> Derived:
             allowed = f"0 to {free - 1}" if free else "none: there are no grains"
             faults.append(Fault("loads.grains", number, "there is no such grain", "", allowed))
     check_controls(scene, free, faults)
+    if not faults:
+        check_motions(scene, faults)
     if faults:
         raise InputError(faults)
     return Derived(
@@ -167,15 +170,7 @@ def fluid_scales(fluid: Fluid) -> Scales:
 
 def grain_count(scene: Scene) -> int:
     """Number of grains and discs that are held."""
-    placed = len(scene.disc) + len(by_hand(scene))
-    packing = scene.grains.packing if scene.grains else None
-    if packing is None or (scene.rock and scene.rock.polygons):
-        return placed
-    radii = radii_of(packing)
-    if radii is not None:
-        return placed + len(radii)
-    area = math.pi / 4 * packing.diameter**2 * (1 + packing.size_spread**2 / 3)
-    return placed + max(1, round(packing.packing_fraction * packing.width * packing.height / area))
+    return len(scene.disc) + len(by_hand(scene)) + packed_count(scene)
 
 
 def diameters(scene: Scene, *, held: bool = True) -> tuple[float, float, float] | None:

@@ -5,13 +5,17 @@ import numpy as np
 from porescale.dem.finite import check_finite, unstable
 from porescale.dem.forces.walls import HIGH, LOW, PRESENT, X
 from porescale.dem.listing import current_pairs
-from porescale.dem.measures.survey import max_overlap
+from porescale.dem.measures.survey import max_overlap, name_of
+from porescale.dem.motion.control import AXIS, CLUMP, INDEX, KIND, PUSH
 from porescale.dem.state import State
 
 WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms are not valid beyond
 WORST_OF_CORNERS = 0.8  # of the thicknesses of two segments: small beside bodies, which go through each other at 1
 WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be detected too late
 WORST_OF_TRAVELLING_CORNERS = 0.2  # of the smallest thickness: two corners meet at two of them, a disc at more
+
+STIFFER = "raise the stiffness or shorten the contact step"
+PRESCRIBED = "its motion is prescribed, and no force stops it: end the motion before, or move what is in its way"
 
 
 def check(grains: State) -> None:
@@ -34,18 +38,29 @@ def check(grains: State) -> None:
         out = int(distance.argmin())
         if distance[out] < 0.0:
             raise unstable(
-                grains, f"grain {out}", f"distance to the {name} wall", float(distance[out]), "m",
-                "it went through the wall: raise the stiffness or shorten the contact step",
+                grains, name_of(grains, out), f"distance to the {name} wall", float(distance[out]), "m",
+                f"it went through the wall: {PRESCRIBED if _prescribed(grains, out) else STIFFER}",
             )  # fmt: skip
     current_pairs(grains)
     _check_plates(grains)
     deepest = max_overlap(grains)
     corner = grains.segments is not None and deepest.disc >= 0 and grains.segments.is_corner[deepest.disc]
     if deepest.share > (WORST_OF_CORNERS if corner else WORST_OVERLAP):
+        surface = deepest.other < 0 and not deepest.against.startswith(("segment", "corner"))
+        moved = _prescribed(grains, deepest.disc) and (surface or _prescribed(grains, deepest.other))
         raise unstable(
-            grains, f"grain {deepest.disc}", f"overlap with {deepest.against} over radius", deepest.share, "",
-            "raise the stiffness or shorten the contact step",
+            grains, name_of(grains, deepest.disc), f"overlap with {deepest.against} over radius", deepest.share, "",
+            PRESCRIBED if moved else STIFFER,
         )  # fmt: skip
+
+
+def _prescribed(grains: State, disc: int) -> bool:
+    """Whether the velocity of a disc is prescribed, whatever the forces: by a hold or a control of x or y."""
+    if 0 <= disc < len(grains.held) and grains.held[disc, :2].any():
+        return True
+    control = grains.drivers.arrays.control if grains.drivers is not None else np.zeros((0, 4), np.int64)
+    own = (control[:, CLUMP] == 0) & (control[:, INDEX] == disc) & (control[:, AXIS] < 2) & (control[:, KIND] != PUSH)
+    return bool(own.any())
 
 
 def _check_travel(grains: State) -> None:
@@ -64,7 +79,7 @@ def _check_travel(grains: State) -> None:
         fastest = int(np.where(chosen, speed, 0.0).argmax())
         if speed[fastest] * grains.last_dt > share * smallest:
             raise unstable(
-                grains, f"grain {fastest}", "speed", float(speed[fastest]), "m/s",
+                grains, name_of(grains, fastest), "speed", float(speed[fastest]), "m/s",
                 f"more than {share:g} of the smallest {what} in a step: shorten the contact step",
             )  # fmt: skip
 

@@ -176,6 +176,11 @@ class Component(Section):
         return []
 
     @property
+    def prescribes(self) -> bool:
+        """Whether it prescribes the motion: not where the component is free or pushed."""
+        return self.velocity is not None or self.displacement is not None
+
+    @property
     def fastest(self) -> float:
         """The largest speed that it prescribes, m/s (or rad/s)."""
         if self.velocity:

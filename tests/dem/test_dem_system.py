@@ -12,6 +12,7 @@ from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
 from porescale.dem.motion import leapfrog as kick
+from porescale.dem.motion.control import Moved
 from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.timestep import packing_limit
 from tests.reference.dem.dem import Body, World
@@ -254,6 +255,31 @@ def test_a_state_beyond_sense_is_unstable(spoil, text):
     spoil(grains.discs)
     grains.refresh()
     with pytest.raises(Unstable, match=text):
+        grains.check()
+
+
+def test_what_no_force_moves_is_named_and_has_a_repair_of_its_own():
+    grains = grains_in_a_box()
+    grains.hold(1)
+    grains.hold(2)
+    grains.steering.control(3, x=Moved(0.0))
+    grains.step(1e-5)
+    grains.discs.position[2] = grains.discs.position[1] + 1e-3
+    grains.refresh()
+    with pytest.raises(Unstable, match=r"overlap with held disc 1 .* at held disc 0; its motion is prescribed"):
+        grains.check()
+    grains.discs.position[2] = grains.discs.position[3] + 1e-3
+    grains.refresh()
+    with pytest.raises(Unstable, match=r"overlap with grain 3 .* at held disc 1; its motion is prescribed"):
+        grains.check()
+    grains.discs.position[2] = grains.discs.position[4] + 1e-3  # which is free: stiffness keeps it out
+    grains.refresh()
+    with pytest.raises(Unstable, match=r"overlap with grain 4 .* at held disc 1; raise the stiffness"):
+        grains.check()
+    grains.hold(2, rotation=False)
+    grains.discs.position[2] = 1e-4, 0.05
+    grains.refresh()
+    with pytest.raises(Unstable, match=r"overlap with the left wall .* at grain 2; its motion is prescribed"):
         grains.check()
 
 

@@ -65,11 +65,20 @@ def inflow_rate(scene: Scene, name: str, step: float) -> float:
     return looked.rate if looked else 0.0
 
 
-def largest_force(scene: Scene) -> float:
-    """Largest force density (N/m³) of an own body force over the run.  InputError where it is no number somewhere."""
+def largest_force(scene: Scene, axis: int) -> float:
+    """Largest component (N/m³) along ``axis`` of an own body force over the run.  InputError where it is no number
+    somewhere."""
     looked = _force(scene)
     assert looked
-    return looked.largest
+    return looked.parts[axis]
+
+
+def impulse(scene: Scene, axis: int) -> float:
+    """Largest impulse (N s/m³) along ``axis``, from the start on, that the mean of an own body force over the box
+    gives."""
+    looked = _force(scene)
+    assert looked
+    return looked.impulse[axis]
 
 
 def force_rate(scene: Scene, step: float) -> float:
@@ -79,8 +88,10 @@ def force_rate(scene: Scene, step: float) -> float:
 
 
 class Looked(NamedTuple):
-    """What a law was seen to give: its ``largest`` length, and its ``rate``, rad/s: the largest slope between two times
-    that it was looked at over half the reach of what it gives at one place.
+    """What a law was seen to give: its ``largest`` length; its ``rate``, rad/s: the largest slope between two times
+    that it was looked at over half the reach of what it gives at one place; and its ``impulse``: of each component, the
+    largest magnitude of the integral (s of its unit) from 0 on of the mean over the places;  parts: the largest
+    magnitude of each component.
 
     Where rates are asked for, each look is two, a step of the fluid apart: the slope between them is that of all motion
     that the fluid can follow.  What lasts less than a two-hundredth of the run may lie between the looks.
@@ -88,6 +99,8 @@ class Looked(NamedTuple):
 
     largest: float
     rate: float
+    impulse: tuple[float, float]
+    parts: tuple[float, float]
 
 
 def _inflow(scene: Scene, name: str, step: float = 0.0) -> Looked | None:
@@ -119,7 +132,7 @@ def times_of_looks(end: float, step: float) -> Sequence[float]:
 def _look(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], times: Sequence[float], unit: str) -> Looked:
     """What a law gives at some places (m) and times (s), which ascend."""
     timed = law.function.__code__.co_argcount > len(places[0])
-    times = times if timed else [0.0]
+    end, times = times[-1], times if timed else [0.0]
     try:
         compiled = compile_for(law, *places[0], *times[: 1 if timed else 0], count=2)
     except InputError as error:
@@ -134,11 +147,15 @@ def _look(key: str, law: OwnLaw, places: Sequence[tuple[float, ...]], times: Seq
                 repair = f"correct {law.name} in {law.place}"
                 raise InputError(Fault(key, law.reference, problem, "", f"<= {MOST[unit]:g} {unit}", repair))
     largest = float(np.hypot(given[..., 0], given[..., 1]).max())
+    mean = given.mean(axis=1)
+    parts = float(np.abs(given[..., 0]).max()), float(np.abs(given[..., 1]).max())
     if not timed:
-        return Looked(largest, 0.0)
+        return Looked(largest, 0.0, (abs(float(mean[0, 0])) * end, abs(float(mean[0, 1])) * end), parts)
+    gained = np.abs(np.cumsum(0.5 * (mean[1:] + mean[:-1]) * np.diff(times)[:, None], axis=0)).max(axis=0)
     reach = 0.5 * float(np.ptp(given, axis=0).max())
     steepest = float((np.abs(np.diff(given, axis=0)).max(axis=(1, 2)) / np.diff(times)).max())
-    return Looked(largest, steepest / reach if reach > 1e-9 * largest else 0.0)
+    rate = steepest / reach if reach > 1e-9 * largest else 0.0
+    return Looked(largest, rate, (float(gained[0]), float(gained[1])), parts)
 
 
 def _at(key: str, fault: Fault) -> Fault:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from porescale.builders.checks.flows import check_flows
+from porescale.builders.checks.flows import check_flows, forced_speed, pressed_speed
 from porescale.builders.checks.held_places import narrow_gap
 from porescale.builders.checks.limits import (
     CELLS_THICK,
@@ -23,28 +23,31 @@ from porescale.builders.checks.limits import (
     slow,
     thin,
 )
-from porescale.builders.checks.own_laws import inflow_peak, largest_force
+from porescale.builders.checks.own_laws import inflow_peak
 from porescale.builders.checks.sound import check_gate, check_inflows, check_pistons, check_sound
 from porescale.builders.initial.clumps import least_density
-from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.initial.fluid_options import collision_options, weight_of
 from porescale.builders.initial.frames import Placed
-from porescale.builders.initial.placed import by_hand
-from porescale.common.compiled.own import OwnLaw
+from porescale.builders.initial.placed import by_hand, controls_by_hand
 from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.dem.sanity import WORST_OF_TRAVELLING_CORNERS, WORST_TRAVEL
+from porescale.dem.contact.law import ContactLaw
+from porescale.dem.contact.own import OwnContact
+from porescale.dem.sanity import WORST_OF_TRAVELLING_CORNERS, WORST_OVERLAP, WORST_TRAVEL
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.scales import Scales
+from porescale.scene.bodies.control import Controlled
 from porescale.scene.bodies.rectangle import Rectangle
 from porescale.scene.bodies.segments import Container
-from porescale.scene.domain import Domain
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
 
 BLUNT = 1.2
 """Drag coefficient of a cylinder in cross flow at Reynolds numbers of 10² to 10⁵."""
+ROUNDED_UP = 1.06
+"""Factor after which two digits of a number are not less than it: they are off by 5 % at most."""
 UNIT: dict[str, Any] = {"relaxation_time": 1.0, "force": (0.0, 0.0), "dtype": "float64"}
 """Numbers for a law that is only looked at."""
 Sizes = tuple[float, float, float]
@@ -57,31 +60,40 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
     fluid), reduced by buoyancy; over a periodic side, which has no end, for as long as the run lasts.  In fluid the
     terminal speed of a grain if that is less, and for a packing that of the gravity current it can become,
     sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin 1968): grains that fall together fall faster than each alone.
-    Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down; under a
-    difference of pressure the same, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
+    Fluid under a body force: see `forced_speed`; under a difference of pressure the parabola between the walls across
+    it, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
     """
-    g, speed = math.hypot(*scene.gravity), max(given_speed(scene), _framed_speed(scene.container, frames))
+    speed = max(given_speed(scene), _framed_speed(scene.container, frames))
     if scene.grains and sizes:
-        for grain in by_hand(scene):
-            speed = max(speed, math.hypot(*grain.velocity) + abs(grain.spin) * grain.diameter / 2)
-        packing = scene.grains.packing
-        lighter = 1 - scales.density / scene.grains.density if scales else 1.0
-        reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0, frames)
-        free = abs(lighter) * g * scene.time.end if unending else math.sqrt(2 * abs(lighter) * g * reach)
-        if scales:
-            driving = abs(scene.grains.density / scales.density - 1) * g
-            free = min(free, terminal_speed(sizes[2], driving, scales.viscosity))
-            if packing:
-                height = column_height(packing, scene.gravity)
-                free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * height))
+        packing, free = scene.grains.packing, grain_speed(scene, scales, sizes, frames)
+        if scales and packing:
+            height = column_height(packing, scene.gravity)
+            driving = abs(scene.grains.density / scales.density - 1) * math.hypot(*scene.gravity)
+            free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * height))
         speed = max(speed, free)
     if scene.fluid and scales:
-        force = scene.fluid.body_force
-        push = (largest_force(scene) if isinstance(force, OwnLaw) else math.hypot(*force)) / scales.density
-        across = min(scene.domain.width, scene.domain.height)
-        speed = max(speed, push * across**2 / (8 * scales.viscosity))
-        speed = max(speed, _pressed_speed(scene.domain, scales))
+        speed = max(speed, forced_speed(scene, scales), pressed_speed(scene.domain, scales))
     return speed
+
+
+def grain_speed(
+    scene: Scene, scales: Scales | None, sizes: Sizes, frames: Sequence[Placed] = (), *, impact: bool = False
+) -> float:
+    """The largest speed (m/s) of a grain by itself: that which it is given, and that of its fall.
+
+    impact : with which it comes to a contact: its fall then ends a smallest radius from a side, and a packing that lies
+    already, since it has settled or was compressed, does not count.
+    """
+    assert scene.grains
+    g, density = math.hypot(*scene.gravity), scene.grains.density
+    given = [math.hypot(*it.velocity) + abs(it.spin) * it.diameter / 2 for it in by_hand(scene)]
+    lighter = 1 - scales.density / density if scales else 1.0
+    reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0, frames, lying=not impact)
+    reach = max(0.0, reach - sizes[0] / 2) if impact else reach
+    free = abs(lighter) * g * scene.time.end if unending else math.sqrt(2 * abs(lighter) * g * reach)
+    if scales:
+        free = min(free, terminal_speed(sizes[2], abs(density / scales.density - 1) * g, scales.viscosity))
+    return max([free, *given])
 
 
 def given_speed(scene: Scene) -> float:
@@ -101,17 +113,6 @@ def given_speed(scene: Scene) -> float:
     return max(speeds)
 
 
-def _pressed_speed(d: Domain, scales: Scales) -> float:
-    """Speed (m/s) that the largest difference of pressure between sides can drive."""
-    held = {name: side.pressure or 0.0 for name, side in d.sides.items() if "pressure" in side.boundary.numbers}
-    if len(held) < 2:
-        return 0.0
-    drop = max(held.values()) - min(held.values())
-    along, across = (d.width, d.height) if {"left", "right"} <= set(held) else (d.height, d.width)
-    parabola = drop / along / scales.density * across**2 / (8 * scales.viscosity)
-    return min(parabola, math.sqrt(2 * drop / scales.density))
-
-
 def _framed_speed(containers: Sequence[Container], frames: Sequence[Placed]) -> float:
     """The largest speed that bodies of segments start with or are prescribed to have, m/s."""
     speeds = [0.0]
@@ -124,9 +125,10 @@ def _framed_speed(containers: Sequence[Container], frames: Sequence[Placed]) -> 
     return max(speeds)
 
 
-def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[float, bool]:
+def fall(scene: Scene, sense: float, frames: Sequence[Placed] = (), *, lying: bool = True) -> tuple[float, bool]:
     """How far (m) a grain can go along gravity (``sense`` 1) or against it (-1), and whether a periodic side makes
-    that endless.  From a grain's centre, or the far edge of the packing, to the last corner of the box.
+    that endless.  From a grain's centre, or the far edge of the packing, to the last corner of the box.  A body whose
+    motion along gravity is prescribed does not fall, nor, unless ``lying``, a packing that lies already.
     """
     g = math.hypot(*scene.gravity)
     if g == 0 or scene.grains is None:
@@ -134,13 +136,33 @@ def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[flo
     along = [sense * component / g for component in scene.gravity]
     d = scene.domain
     unending = any(component != 0 and endless for component, endless in zip(along, d.periodic, strict=True))
-    starts = [(grain.x, grain.y) for grain in by_hand(scene)]
-    starts += [corner for it in frames if it.free for corner in it.frame.corners]
-    if packing := scene.grains.packing:
+    held = controls_by_hand(scene)
+    starts = [(it.x, it.y) for it, by in zip(by_hand(scene), held, strict=True) if not _borne(scene, by)]
+    starts += [corner for it in _falling(scene, frames) for corner in it.frame.corners]
+    packing = scene.grains.packing
+    if packing and (lying or not (packing.settle or packing.compress)):
         right, top = packing.left + packing.width, packing.bottom + packing.height
         starts += [(x, y) for x in (packing.left, right) for y in (packing.bottom, top)]
+    if not starts:
+        return 0.0, False
     last = sum(max(0.0, component * size) for component, size in zip(along, (d.width, d.height), strict=True))
     return max([0.0, *(last - (along[0] * x + along[1] * y) for x, y in starts)]), unending
+
+
+def _borne(scene: Scene, by: Controlled | None) -> bool:
+    """Whether a control prescribes the motion of a body along gravity."""
+    if by is None:
+        return False
+    return all(axis.prescribes for axis, pull in zip((by.x, by.y), scene.gravity, strict=True) if pull != 0.0)
+
+
+def _falling(scene: Scene, frames: Sequence[Placed]) -> list[Placed]:
+    """The frames that are free to move along gravity."""
+    given, found = {it.of: it for it in scene.control}, []
+    for kind in ("segment", "polygon", "rock"):
+        same = [it for it in frames if it.kind == kind]
+        found += [it for k, it in enumerate(same) if it.free and not _borne(scene, given.get((kind, k)))]
+    return found
 
 
 def travel_step(scene: Scene, speed: float, radius: float, frames: Sequence[Placed] = ()) -> float:
@@ -151,6 +173,41 @@ def travel_step(scene: Scene, speed: float, radius: float, frames: Sequence[Plac
     thickness = min((it.frame.thickness for it in frames if it.frame.thickness > 0.0), default=math.inf)
     way = min(WORST_TRAVEL * radius, WORST_OF_TRAVELLING_CORNERS * thickness)
     return way / speed if speed > 0.0 and not fall(scene, 1.0, frames)[1] else math.inf
+
+
+def too_soft(
+    scene: Scene, scales: Scales | None, sizes: Sizes, laws: Sequence[ContactLaw], frames: Sequence[Placed] = ()
+) -> str:
+    """A warning where grains fall so fast that a contact is pressed as deep as where a run stops; "" where not.
+
+    laws : of two grains, and of a grain and a wall, of the smallest grains, for which Hertz's law is deepest over the
+    radius.  A linear dashpot with the damping ratio h leaves exp(-h arccos(h)/sqrt(1 - h²)) of the overlap; a user's
+    law is integrated with its damping.  A fall without an end is a bound that hardly anything reaches: left out.
+    """
+    assert scene.grains
+    assert scene.contact
+    if fall(scene, 1.0, frames)[1]:
+        return ""
+    speed, radius = grain_speed(scene, scales, sizes, frames, impact=True), sizes[0] / 2
+    mass, stiffer, limit = math.pi * radius**2 * scene.grains.density, 0.0, WORST_OVERLAP * radius
+    deepest = 0.0
+    for law, share in zip(laws, (0.5, 1.0), strict=True):  # reduced mass and radius are half of a grain's own, or these
+        depth, power = law.impact(share * mass, share * radius, speed) if speed > 0.0 else (0.0, 1.0)
+        if not isinstance(law, OwnContact):
+            h = min(law.ratio_of_damping(share * mass, share * radius), 1.0 - 1e-9)
+            depth *= math.exp(-h * math.acos(h) / math.sqrt(1.0 - h**2))
+        deepest, stiffer = max(deepest, depth), max(stiffer, (depth / limit) ** power)
+    if deepest <= limit:
+        return ""
+    key, unit = law_class(scene.contact).required
+    value = getattr(scene.contact, key) if key and not scene.material else None
+    enough = f"{ROUNDED_UP * stiffer:.2g} times as stiff ones suffice"
+    if value is not None:
+        enough = f"contact.{key} = {ROUNDED_UP * stiffer * value:.2g} {unit} suffices"
+    return (
+        f"contacts are too soft: a grain at {speed:.2g} m/s, which is to be expected, presses one by {deepest:.2g} m,"
+        f" and beyond {limit:.2g} m, {WORST_OVERLAP:g} of its radius, a run stops; {enough}"
+    )
 
 
 def column_height(packing: Packing, gravity: tuple[float, float]) -> float:

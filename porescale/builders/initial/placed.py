@@ -1,13 +1,16 @@
 """Free bodies placed by hand: grains, and the discs of clumps, with their numbers."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.builders.initial.packing import radii_of
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.scene.bodies.clump import Clump
+from porescale.scene.bodies.control import Controlled
 from porescale.scene.bodies.disc import Disc
 from porescale.scene.grains import Grain
 from porescale.scene.scene import Scene
@@ -38,6 +41,26 @@ def by_hand(scene: Scene) -> list[Grain | Member]:
     """All that is placed by hand and free: grains, then the discs of clumps."""
     grains = scene.grains.grain if scene.grains else ()
     return [*grains, *(disc for body in members(scene.clump) for disc in body)]
+
+
+def packed_count(scene: Scene) -> int:
+    """Number of discs of the packing; an estimate by their mean area where sizes are drawn as they are placed."""
+    packing = scene.grains.packing if scene.grains else None
+    if packing is None or (scene.rock and scene.rock.polygons):
+        return 0
+    radii = radii_of(packing)
+    if radii is not None:
+        return len(radii)
+    area = math.pi / 4 * packing.diameter**2 * (1 + packing.size_spread**2 / 3)
+    return max(1, round(packing.packing_fraction * packing.width * packing.height / area))
+
+
+def controls_by_hand(scene: Scene) -> list[Controlled | None]:
+    """The control of each of ``by_hand``, that of its clump for a member; None without one."""
+    given = {it.of: it for it in scene.control}
+    before, count = packed_count(scene), len(scene.grains.grain) if scene.grains else 0
+    found = [given.get(("grain", before + k)) for k in range(count)]
+    return found + [given.get(("clump", k)) for k, body in enumerate(members(scene.clump)) for _ in body]
 
 
 def hand_names(scene: Scene) -> tuple[list[str], list[int]]:

@@ -119,11 +119,13 @@ Found = tuple[float, int, int, float]
 
 
 class Overlap(NamedTuple):
-    """The deepest contact: overlap over the (smaller) radius, the disc, and what it is pressed against."""
+    """The deepest contact: overlap over the (smaller) radius, the disc, and what it is pressed against; ``other``: that
+    disc, -1 where it is none."""
 
     share: float
     disc: int
     against: str
+    other: int = -1
 
 
 def kinetic_energy(discs: Discs) -> float:
@@ -162,15 +164,22 @@ def max_overlap(grains: State) -> Overlap:
     segments and corners of the sum of radius and thickness, where a disc would go through.
     """
     share, i, j, _ = _survey(grains)
-    found = [(share, i, f"grain {j}")]
+    found = [(share, i, name_of(grains, j), j)]
     walls, plates = [f"the {name} wall" for name in grains.wall_names], [f"the {name}" for name in grains.plate_names]
     names = walls, plates, [f"rectangle {k}" for k in range(len(grains.rectangles))]
     for (share, i, w, _), own in zip(_survey_surfaces(grains), names, strict=True):
-        found.append((share, i, own[w] if own else ""))
+        found.append((share, i, own[w] if own else "", -1))
     share, i, e, *_ = _survey_segments(grains)
-    found.append((share, i, f"segment {e}" if e >= 0 else f"corner {e + grains.discs.count}"))
-    share, i, against = max(found, key=lambda each: each[0])  # the first of the deepest
-    return Overlap(float(share), int(i), against)
+    found.append((share, i, f"segment {e}" if e >= 0 else f"corner {e + grains.discs.count}", -1))
+    share, i, against, j = max(found, key=lambda each: each[0])  # the first of the deepest
+    return Overlap(float(share), int(i), against, int(j))
+
+
+def name_of(grains: State, disc: int) -> str:
+    """A disc in words: "held disc k", the k-th of those with all components held, or "grain i", its number."""
+    if disc < 0 or disc >= len(grains.held) or not grains.held[disc].all():
+        return f"grain {disc}"
+    return f"held disc {int(np.count_nonzero(grains.held[:disc].all(axis=1)))}"
 
 
 def coordination(grains: State) -> float:
