@@ -13,10 +13,11 @@ import numpy as np
 
 from porescale.common.api.hooks import EveryHook, ForceFunction, ForceHook, Hook, SampleFunction, when
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import is_number
 from porescale.common.record.columns import Columns
 from porescale.common.record.model import variable_step
 from porescale.common.record.record import MADE_LATER
-from porescale.common.record.schedule import CHECK_EVERY, SLACK, block, is_number
+from porescale.common.record.schedule import CHECK_EVERY, SLACK, block
 from porescale.common.record.stop import polite_stop
 
 if TYPE_CHECKING:
