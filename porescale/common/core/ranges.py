@@ -3,22 +3,22 @@
 import math
 import operator
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
-from numbers import Real
+from dataclasses import dataclass, field
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.types import Floats
+from porescale.common.core.types import AnyArray, Floats
 
 
 @dataclass(frozen=True)
 class Range:
     """Finite numbers in ``unit``, greater than ``gt``, at least ``ge``, less than ``lt``, at most ``le``.
 
-    A bound that is None does not limit them.
+    A bound that is None does not limit them;  whole : whole numbers alone.
     """
 
     unit: str = ""
@@ -26,11 +26,13 @@ class Range:
     ge: float | None = None
     lt: float | None = None
     le: float | None = None
+    whole: bool = field(default=False, kw_only=True)
 
     def allowed(self) -> str:
         """The range in words, without the unit: "> 0 and <= 1"; "" if every number is allowed."""
         bounds = (("> ", self.gt), (">= ", self.ge), ("< ", self.lt), ("<= ", self.le))
-        return " and ".join(f"{sign}{bound:g}" for sign, bound in bounds if bound is not None)
+        words = " and ".join(f"{sign}{bound:g}" for sign, bound in bounds if bound is not None)
+        return f"{words}, whole".removeprefix(", ") if self.whole else words
 
     def contains(self, value: Any) -> Any:
         """Whether ``value`` (in ``unit``) lies within the bounds; of an array, which values of it do."""
@@ -45,9 +47,11 @@ class Range:
         """What is wrong with one ``value`` called ``key``; None where nothing is."""
         if not is_number(value):
             return Fault(key, str(value), "is no number", self.unit, self.allowed(), "give one number")
+        if self.whole and not isinstance(value, Integral):
+            return Fault(key, value, "is no whole number", self.unit, self.allowed(), "give one without a point")
         if math.isfinite(value) and self.contains(float(value)):
             return None
-        return self.out_of_range(key, float(value))
+        return self.out_of_range(key, value)
 
     def out_of_range(self, key: str, value: float, where: str = "") -> Fault:
         """The fault of a ``value`` outside the range;  where : which of several it is, as "of grain 3"."""
@@ -111,6 +115,22 @@ def numbers(
         where = f"of {of} {bad[0][0]}" if of else ""
         raise InputError(within.out_of_range(key, float(made[tuple(bad[0])]), where))
     return made
+
+
+def require_arrays(place: str, given: Mapping[str, AnyArray], shapes: Mapping[str, tuple[int, ...]]) -> None:
+    """Raise InputError naming every array of ``given``, by its key after ``place``, that has not its shape, or whose
+    elements are not float64 (those called "material": int64): kernels write into these arrays."""
+    faults = []
+    for key, shape in shapes.items():
+        array, kind = given[key], np.int64 if key == "material" else np.float64
+        allowed = f"shape {shape}, {np.dtype(kind).name}"
+        if not isinstance(array, np.ndarray):
+            faults.append(Fault(f"{place}.{key}", str(array), "is no array of numpy", "", allowed, "make it one"))
+        elif array.shape != shape or array.dtype != kind:
+            problem = f"is an array of shape {array.shape}, {array.dtype}"
+            faults.append(Fault(f"{place}.{key}", None, problem, "", allowed, "give one for each particle"))
+    if faults:
+        raise InputError(faults)
 
 
 def _misfit(key: str, given: Any, shape: tuple[int, ...], within: Range, *, spread: bool) -> InputError:
