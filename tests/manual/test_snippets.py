@@ -18,7 +18,7 @@ WITH_CODE = [page for page in PAGES if any(it.runs for it in snippets(page.read_
 
 LONG = {"first_hour/film", "first_hour/python", "first_hour/sweep", "howto/error_bars", "howto/force_on_a_pipe",
         "howto/open_results", "howto/own_law", "howto/paper_figure", "howto/photograph", "howto/resume",
-        "howto/unsaturated"}  # fmt: skip
+        "howto/unsaturated", "python"}  # fmt: skip
 """Pages that run for ten seconds or more."""
 
 
