@@ -150,6 +150,7 @@ class Simulation(ShownSimulation):
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""
+        self._require_steps(steps)
         before = [part.before for part in self.parts if overrides(part, "before")]
         for _ in range(steps):
             for act in before:

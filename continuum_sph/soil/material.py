@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline
+from porescale.common.core.ranges import Range, require_in_range
 from porescale.common.core.types import Floats
 
 (
@@ -38,12 +39,23 @@ from porescale.common.core.types import Floats
 tension, Pa; 1 if it yields; density at the start, share of grains 1 - n at the start.  B and G are times E0."""
 
 
+MODULI = ("plane strain", "printed")
+RANGES = {
+    "stiffness": Range("Pa", gt=0), "density": Range("kg/m^3", gt=0), "poisson": Range(gt=-1, lt=0.5),
+    "exponent": Range(), "reference": Range("Pa", gt=0), "least": Range("Pa", ge=0), "sin_friction": Range(ge=0, le=1),
+    "cohesion_intercept": Range("Pa", ge=0), "sin_dilatancy": Range(ge=-1, le=1), "tension": Range("Pa", ge=0),
+    "porosity": Range(ge=0, lt=1),
+}  # fmt: skip
+"""What the numbers of a material may be: moduli are positive and finite at -1 < ν < 1/2."""
+
+
 @dataclass(frozen=True)
 class Material:
     """stiffness : E0, Pa at the mean stress ``reference`` (p0, Pa);  exponent : m;  poisson : ν;  modulus : "plane
     strain" or "printed";  sin_friction : sin φ;  cohesion_intercept : c cos φ, Pa;  sin_dilatancy : sin ψ;
     tension : largest, Pa;  yields : else elastic for ever;  density : of grains per whole volume at the start, kg/m³;
-    porosity : n then;  least : mean stress (Pa) below which soil gets no softer.
+    porosity : n then;  least : mean stress (Pa) below which soil gets no softer.  Raises InputError for values that no
+    material has, see RANGES.
     """
 
     stiffness: float
@@ -59,6 +71,9 @@ class Material:
     tension: float = 0.0
     yields: bool = True
     porosity: float = 0.4
+
+    def __post_init__(self) -> None:
+        require_in_range("material", vars(self), RANGES, {"modulus": MODULI})
 
     @property
     def printed(self) -> bool:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.ranges import Range, require_arrays, require_in_range
 from porescale.common.core.types import Floats
 
 X, Y, VX, VY, VOLUME, MASS, SOUND_OVER_DENSITY, SHEAR_RATE, TXX, TXY, TYX, TYY, GXX, GXY, GYX, GYY = range(16)
@@ -21,7 +22,7 @@ class Soil:
     density (soil,) kg/m³, grains per whole volume;  stress (n, 4) Pa, effective, of walls that of the soil before them;
     material (n,) number of the particle's material.  What has happened to a particle: separation_strain (soil,)
     by how much of its volume it has come apart, plastic_shear (soil,) shear strain that did not come back.
-    The rest is made of these.
+    The rest is made of these.  Raises InputError for arrays of other shapes; they are kept, not copied.
     """
 
     soil: int
@@ -43,13 +44,12 @@ class Soil:
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
 
     def __post_init__(self) -> None:
-        n = len(self.x)
-        assert self.x.shape == self.v.shape == (n, 2)
-        assert self.mass.shape == (n,)
-        assert self.density.shape == (self.soil,)
-        assert self.stress.shape == (n, 4)
-        if not len(self.material):
+        n = len(np.atleast_1d(self.x))
+        require_in_range("soil", vars(self), {"soil": Range(ge=0, le=n, whole=True)})
+        if not np.size(self.material):
             self.material = np.zeros(n, np.int64)
+        shapes = {"x": (n, 2), "v": (n, 2), "mass": (n,), "density": (self.soil,), "stress": (n, 4), "material": (n,)}
+        require_arrays("soil", vars(self), shapes)
         self.force, self.acceleration, self.drift = (np.zeros((self.soil, 2)) for _ in range(3))
         self.spread = np.zeros((self.soil, 6))
         self.separation_strain, self.plastic_shear = np.zeros(self.soil), np.zeros(self.soil)

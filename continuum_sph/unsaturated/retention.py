@@ -24,6 +24,7 @@ import numpy as np
 
 from porescale.common.compiled.jit import inline
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, require_in_range
 from porescale.common.core.types import Floats
 
 LEAST = 1e-12
@@ -64,11 +65,18 @@ def effective_saturation(filling, law):
     return min(1.0, max(0.0, (filling - law.residual) / (1.0 - law.residual)))
 
 
+RANGES = {
+    "alpha": Range("1/m", gt=0), "n": Range(gt=1), "residual": Range(ge=0, lt=1), "weight": Range("N/m^3", gt=0),
+    "stiffness": Range("Pa", gt=0),
+}  # fmt: skip
+
+
 @dataclass(frozen=True)
 class VanGenuchten:
-    """alpha : α, 1/m;  n : > 1;  residual : S_r;  weight : ρ_w g, N/m³;  stiffness : K_w, Pa.
+    """alpha : α, 1/m, > 0;  n : > 1;  residual : S_r, from 0 to less than 1;  weight : ρ_w g, N/m³, > 0;  stiffness :
+    K_w, Pa, > 0.
 
-    Raises InputError when the water is softer than the curve is anywhere.
+    Raises InputError for others, and where ``numbers`` are read when the water is softer than the curve is anywhere.
     """
 
     alpha: float
@@ -76,6 +84,9 @@ class VanGenuchten:
     residual: float
     weight: float
     stiffness: float
+
+    def __post_init__(self) -> None:
+        require_in_range("retention", vars(self), RANGES)
 
     @property
     def m(self) -> float:

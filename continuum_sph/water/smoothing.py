@@ -10,6 +10,7 @@ import numpy as np
 
 from porescale.common.compiled.jit import inline
 from porescale.common.compiled.simd import maximum
+from porescale.common.core.ranges import Range, require_in_range
 
 CUBIC, WENDLAND = 0, 1
 NAMES = ("cubic", "wendland")
@@ -94,10 +95,13 @@ def kernel_slope(kind, q, h):
 
 @dataclass(frozen=True)
 class Smoothing:
-    """name : "cubic" or "wendland";  length : h, m."""
+    """name : "cubic" or "wendland";  length : h, m, > 0.  Raises InputError for others."""
 
     name: str
     length: float
+
+    def __post_init__(self) -> None:
+        require_in_range("smoothing", vars(self), {"length": Range("m", gt=0)}, {"name": NAMES})
 
     @property
     def kind(self) -> int:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.ranges import Range, require_arrays, require_in_range
 from porescale.common.core.types import Floats
 
 X, Y, VX, VY, RHO, P, VOLUME, COMPRESSIBILITY = range(8)
@@ -22,7 +23,8 @@ class Layer:
     x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth;
     density (fluid,) kg/m³;  material (n,) number of the particle's fluid, of a wall particle 1 where fluid slips past
     walls that else hold it;  the rest is made of these: pressure (n,) Pa and what the pass over pairs reads,
-    of which ghost, properties, lengths, matrix and facing have no rows unless a flow needs them.
+    of which ghost, properties, lengths, matrix and facing have no rows unless a flow needs them.  Raises InputError for
+    arrays of other shapes; they are kept, not copied.
     """
 
     fluid: int
@@ -50,13 +52,12 @@ class Layer:
     has_budget: bool = field(init=False, default=False)  # whether a budget of them is kept
 
     def __post_init__(self) -> None:
-        n = len(self.x)
-        assert self.x.shape == self.v.shape == (n, 2)
-        assert self.mass.shape == (n,)
-        assert self.density.shape == (self.fluid,)
-        if not len(self.material):
+        n = len(np.atleast_1d(self.x))
+        require_in_range("layer", vars(self), {"fluid": Range(ge=0, le=n, whole=True)})
+        if not np.size(self.material):
             self.material = np.zeros(n, np.int64)
-        assert self.material.shape == (n,)
+        shapes = {"x": (n, 2), "v": (n, 2), "mass": (n,), "density": (self.fluid,), "material": (n,)}
+        require_arrays("layer", vars(self), shapes)
         self.acceleration, self.smoothed = np.zeros((self.fluid, 2)), np.zeros((self.fluid, 2))
         self.drift = np.zeros((self.fluid, 2))
         self.rate, self.rate_before = np.zeros(self.fluid), np.zeros(self.fluid)

@@ -119,7 +119,7 @@ def _regions(scene: Scene, derived: Derived, snapshot: Snapshot) -> dict[str, fl
     instruments, cloud = GrainInstruments(stand_in), snapshot.clouds.get(CONTACTS)
     found = _contacts(discs, cloud)
     loose = instruments.rattling(found)
-    row: dict[str, float] = {}
+    row = dict(instruments.first)
     for name, region in instruments.regions:
         own = region_row(instruments.grains, found, region, loose, instruments.held)
         if cloud is None:

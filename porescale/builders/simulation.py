@@ -175,6 +175,7 @@ class Simulation(ShownSimulation):
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
+        self._require_steps(steps)
         try:
             self._advance(steps)
             if self.fluid:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, numbers
 from porescale.common.core.types import Floats
 
 FIELDS = (
@@ -75,28 +76,33 @@ def make_discs(
 ) -> Discs:
     """Discs at ``position`` (n, 2) m with ``radius`` (n,) or a number, m, and ``density``, kg/m^3.
 
-    ``velocity`` (n, 2) m/s, ``spin`` rad/s and ``angle`` rad are numbers or arrays.  Everything is copied.
-    Raises InputError when a radius or density is not positive or a position is not finite.
+    ``velocity`` (n, 2) m/s, ``spin`` rad/s and ``angle`` rad are numbers or arrays.  Everything is copied.  One pair of
+    numbers is the position of one disc.  Raises InputError when an array has another shape, a number is not finite, or
+    a radius or density is not positive.
     """
-    place = np.array(position, dtype=np.float64).reshape(-1, 2)
+    place = numbers("grains.position", position, (-1, 2), Range("m"), "grain")
     count = len(place)
-    size = np.broadcast_to(np.asarray(radius, dtype=np.float64), (count,)).copy()
-    heavy = np.broadcast_to(np.asarray(density, dtype=np.float64), (count,))
-    faults = []
-    if not np.all(np.isfinite(place)):
-        faults.append(Fault("grains.position", problem="not finite", unit="m"))
-    for key, values, unit in (("grains.radius", size, "m"), ("grains.density", heavy, "kg/m^3")):
-        bad = np.flatnonzero(~(values > 0.0) | ~np.isfinite(values))
-        if len(bad):
-            faults.append(Fault(key, float(values[bad[0]]), f"of grain {bad[0]}", unit, "> 0"))
+    read, faults = {}, []
+    for key, given, shape, within in (
+        ("radius", radius, (count,), Range("m", gt=0)),
+        ("density", density, (count,), Range("kg/m^3", gt=0)),
+        ("velocity", velocity, (count, 2), Range("m/s")),
+        ("spin", spin, (count,), Range("rad/s")),
+        ("angle", angle, (count,), Range("rad")),
+    ):
+        try:
+            read[key] = numbers(f"grains.{key}", given, shape, within, "grain", spread=True)
+        except InputError as error:
+            faults += error.faults
     if faults:
         raise InputError(faults)
-    mass = np.pi * size**2 * heavy
+    size = read["radius"]
+    mass = np.pi * size**2 * read["density"]
     return Discs(
         position=place,
-        angle=np.broadcast_to(np.asarray(angle, dtype=np.float64), (count,)).copy(),
-        velocity=np.broadcast_to(np.asarray(velocity, dtype=np.float64), (count, 2)).copy(),
-        spin=np.broadcast_to(np.asarray(spin, dtype=np.float64), (count,)).copy(),
+        angle=read["angle"],
+        velocity=read["velocity"],
+        spin=read["spin"],
         radius=size,
         mass=mass,
         inertia=0.5 * mass * size**2,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, numbers, require_in_range
 from porescale.common.core.types import Floats
 from porescale.dem import checkpoint, laws, listing, sanity, steering
 from porescale.dem.bodies.bonding import framed_parts
@@ -22,6 +23,7 @@ from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.motion.rigid_and_driven import DriverArrays
 from porescale.dem.resting.frictionless import law_of_steps, may_turn
 from porescale.dem.resting.static import leave_out, what_stands
+from porescale.dem.sanity import check_step
 from porescale.dem.state import State
 from porescale.dem.step import contact_steps
 from porescale.dem.timestep import SAFETY, lightest, stable_step
@@ -75,13 +77,18 @@ class Grains(State):
     ) -> None:
         """Another straight wall without end through ``point`` (m), with ``normal`` into the domain, of any length.
 
-        friction : None: that of the sides.  Raises InputError at a name that is taken or a normal of no length.
+        friction : None: that of the sides.  Raises InputError at a name that is taken, a normal of no length, a point
+        or normal that is no pair of numbers, and a negative friction.
         """
-        length = math.hypot(*normal)
+        x, y = numbers("wall.point", point, (2,), Range("m")).tolist()
+        across, up = numbers("wall.normal", normal, (2,)).tolist()
+        if friction is not None:
+            require_in_range("wall", {"friction": friction}, {"friction": Range(ge=0)})
+        length = math.hypot(across, up)
         if name in self.wall_names or not length > 0.0:
             problem = "is taken" if name in self.wall_names else "has a normal of no length"
             raise InputError(Fault("wall", name, problem))
-        row = [*point, normal[0] / length, normal[1] / length, 0.0, 0.0, 0.0]
+        row = [x, y, across / length, up / length, 0.0, 0.0, 0.0]
         self.walls = np.concatenate((self.walls, [row]))
         self.wall_names.append(name)
         self.wall_frictions.append(friction)
@@ -120,12 +127,19 @@ class Grains(State):
     ) -> None:
         """``count`` contact steps of ``dt`` (s) with the external force (n, 2) N/m and torque (n,) N m/m (None: 0).
 
-        drag (1/s): background damping, for settling only.  Raises Unstable when the list must be rebuilt and a position
-        is no number.  Arrays are allocated only by a rebuild, for a longer list, and where all discs come to rest.
+        drag (1/s): background damping, for settling only.  Raises InputError at a step, count, drag or load that is no
+        such number (of loads: when their array is first given), and Unstable when the list must be rebuilt and a
+        position is no number.  Arrays are allocated only by a rebuild, for a longer list, and where all discs come to
+        rest.
         """
-        for own, given in ((self.external_force, external_force), (self.external_torque, external_torque)):
-            if given is not own:
-                own[:] = 0.0 if given is None else given
+        seen, force, torque = self.checked
+        if (dt, count, drag, type(count)) != seen or external_force is not force or external_torque is not torque:
+            check_step(self, (dt, count, drag, type(count)), external_force, external_torque)
+        for own, load in ((self.external_force, external_force), (self.external_torque, external_torque)):
+            if load is None:
+                own.fill(0.0)
+            elif load is not own:
+                own[:] = load
         if self.static and leave_out(self, self.static, dt, count, drag):
             return
         if dt != self.last_dt:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, numbers
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.bodies.rigid import masses
@@ -15,16 +16,15 @@ from porescale.dem.state import State
 
 
 def material_numbers(law: ContactLaw | Materials, material: ArrayLike | None, count: int) -> NDArray[np.uint8] | None:
-    """Numbers (count,) of the discs' materials, or None where there is one; InputError at a number that is none."""
-    if not isinstance(law, Materials) or len(law.names) == 1:
-        return None
-    given = np.broadcast_to(np.asarray(0 if material is None else material), (count,))
-    bad = np.flatnonzero((given < 0) | (given >= len(law.names)))
-    if len(bad):
-        raise InputError(
-            Fault("material", given[bad[0]].item(), f"of grain {bad[0]}", allowed=f"0 to {len(law.names) - 1}")
-        )
-    return given.astype(np.uint8)
+    """Numbers (count,) of the discs' materials, or None where there is one; InputError at a number that is none, and
+    where there is not one number for each disc, or one for all."""
+    known = len(law.names) if isinstance(law, Materials) else 1
+    within = Range(ge=0, le=known - 1)
+    given = numbers("material", 0 if material is None else material, (count,), within, "grain", spread=True)
+    broken = np.flatnonzero(given % 1.0)
+    if len(broken):
+        raise InputError(Fault("material", float(given[broken[0]]), f"of grain {broken[0]} is no whole number"))
+    return None if known == 1 else given.astype(np.uint8)
 
 
 def set_law(grains: State, law: ContactLaw | Materials, wall_law: ContactLaw | None = None) -> None:

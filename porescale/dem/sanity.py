@@ -1,13 +1,15 @@
-"""Checks that the state of a system of grains is finite and within bounds."""
+"""Checks of a system of grains: what a call of ``step`` is given, and that the state is finite and within bounds."""
 
 import numpy as np
 
+from porescale.common.core.ranges import Range, numbers, require_in_range
+from porescale.common.core.types import Floats
 from porescale.dem.finite import check_finite, unstable
 from porescale.dem.forces.walls import HIGH, LOW, PRESENT, X
 from porescale.dem.listing import current_pairs
 from porescale.dem.measures.survey import max_overlap, name_of
 from porescale.dem.motion.control import AXIS, CLUMP, INDEX, KIND, PUSH
-from porescale.dem.state import State
+from porescale.dem.state import State, StepNumbers
 
 WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms are not valid beyond
 WORST_OF_CORNERS = 0.8  # of the thicknesses of two segments: small beside bodies, which go through each other at 1
@@ -16,6 +18,25 @@ WORST_OF_TRAVELLING_CORNERS = 0.2  # of the smallest thickness: two corners meet
 
 STIFFER = "raise the stiffness or shorten the contact step"
 PRESCRIBED = "its motion is prescribed, and no force stops it: end the motion before, or move what is in its way"
+
+
+STEP = {"dt": Range("s", gt=0), "count": Range(ge=0, whole=True), "drag": Range("1/s", ge=0)}
+"""What a call of ``step`` may be given."""
+
+
+def check_step(grains: State, given: StepNumbers, force: Floats | None, torque: Floats | None) -> None:
+    """Raise InputError where dt (s), count or drag (1/s) of ``given``, or a load is no such number.
+
+    force (n, 2) N/m, torque (n,) N m/m, or None.  What passed is kept in ``checked``, so that further calls with the
+    same numbers and arrays cost nothing.
+    """
+    require_in_range("step", dict(zip(STEP, given, strict=False)), STEP)
+    count = grains.discs.count
+    if force is not None:
+        numbers("step.external_force", force, (count, 2), Range("N/m"), "grain", spread=True)
+    if torque is not None:
+        numbers("step.external_torque", torque, (count,), Range("N m/m"), "grain", spread=True)
+    grains.checked = given, force, torque
 
 
 def check(grains: State) -> None:

@@ -23,6 +23,9 @@ from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.motion.drivers import Drivers
 from porescale.dem.motion.periodic_cell import Still, Straining, period_of
 
+StepNumbers = tuple[float, int, float, type]
+"""Step (s), number of steps, drag (1/s) of a call, and the type of the number."""
+
 
 class StaticState(NamedTuple):
     """What a system was when a full step left it as it was, see resting/static.py: copies of positions (n, 2) m, radii
@@ -77,7 +80,8 @@ class State:
     Parts: drivers (clumps, controls, moving walls, strain), segments, bonds, sleep; None where there is none.
     Clock: steps, last_count (steps of the last call), last_dt (s), seconds (before the step last changed), steps_of_dt
     (since then).  Last check: plate_sides (p, 3, n): right of the plate, beside it, height, valid if plates_checked.
-    static: where nothing can move, see resting/static.py.
+    static: where nothing can move, see resting/static.py.  checked: what ``step`` was last given: dt (s), count,
+    drag (1/s) and the type of the count; force and torque, as they were given.
     """
 
     law: ContactLaw | Materials
@@ -124,6 +128,7 @@ class State:
         self.steps, self.last_count, self.last_dt, self.seconds, self.steps_of_dt = 0, 0, 0.0, 0.0, 0
         self.plate_sides, self.plates_checked = np.zeros((len(plates), 3, count)), False
         self.static: StaticState | None = None
+        self.checked: tuple[StepNumbers, Floats | None, Floats | None] = (0.0, 0, 0.0, int), None, None
 
     def load_walls(self) -> None:
         """Arrays for the load on as many walls as there are now."""

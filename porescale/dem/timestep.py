@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from porescale.common.core.ranges import Range, require_in_range
 from porescale.dem.bodies.clumps import Clumps, fastest
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs
@@ -75,8 +76,11 @@ def stable_step(
 
     ``safety`` times the packing limit, and at least ``steps_per_contact`` steps in the shortest contact of
     two such discs (a free bounce errs by about a step in its duration; 0: stability alone decides).  Linear laws do
-    without the radius; see packing_limit for that of Hertz.
+    without the radius; see packing_limit for that of Hertz.  Raises InputError unless safety > 0 and
+    steps_per_contact >= 0.
     """
+    given = {"safety": safety, "steps_per_contact": steps_per_contact}
+    require_in_range("stable_step", given, {"safety": Range(gt=0), "steps_per_contact": Range(ge=0)})
     steps = []
     for law in laws if isinstance(laws, Sequence) else [laws]:
         steps.append(safety * packing_limit(law, mass, radius))

@@ -10,7 +10,7 @@ from porescale.common.core.errors import InputError
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import scene_as_dict
-from tests.reference.scenes import dry, grain, water
+from tests.reference.scenes import column, dry, grain, water
 
 CORNER = {"name": "corner", "lower": [0.0, 0.0], "upper": [0.004, 0.002]}
 ASKED = {
@@ -58,6 +58,18 @@ def test_forces_on_walls_and_held_discs():
     assert row["left wall moment (N m/m)"] == pytest.approx(-FORCE * 0.0035005, rel=1e-9)
     assert row["right wall force x (N/m)"] == 0.0
     assert row["disc 0 force y (N/m)"] == pytest.approx(FORCE, rel=1e-9)
+
+
+def test_tables_of_grains_in_fluid_carry_the_hydraulic_radius_ratio():
+    control = [{"grain": 0, "x": {"velocity": 0.001}, "record": True}]
+    for made, known in ((column, True), (dry, False)):
+        scene = made(grains={"density": 2500, "hydraulic_radius_ratio": 0.8 if known else None, "grain": PRESSED},
+                     gate=None, region=[CORNER], output__forces=True, control=control)  # fmt: skip
+        tables = build(scene).tables()
+        assert tables.keys() == {"regions", "forces", "control"}
+        for row in tables.values():
+            assert (list(row)[1] == "hydraulic radius ratio ()") == known
+            assert row.get("hydraulic radius ratio ()") == (0.8 if known else None)
 
 
 def test_tables_contacts_and_fields_of_a_run_are_files(tmp_path):

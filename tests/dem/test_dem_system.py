@@ -304,12 +304,24 @@ def test_a_step_beyond_the_limit_is_caught():
         (lambda: Plate(0.0, 1.0, 0.5), "plate.y_high"),
         (lambda: make_discs([[0, 0]], -1.0, 1.0), "grains.radius"),
         (lambda: make_discs([[0, np.inf]], 1.0, 1.0), "grains.position"),
+        (lambda: make_discs([[1, 2, 0], [3, 4, 0]], 1.0, 1.0), r"grains.position: .*\(2, 3\).*shape \(n, 2\)"),
+        (lambda: make_discs([1, 2, 0], 1.0, 1.0), "grains.position"),
+        (lambda: make_discs([[0, 0], [1, 1]], [1.0, 1.0, 1.0], 1.0), "grains.radius"),
+        (lambda: make_discs([[0, 0]], 1.0, 1.0, velocity=(np.nan, 0.0)), "grains.velocity = nan m/s: of grain 0"),
+        (lambda: make_discs([[0, 0]], 1.0, 1.0, spin=np.inf), "grains.spin"),
+        (lambda: make_discs([[0, 0]], 1.0, 1.0, angle=[np.nan]), "grains.angle"),
         (lambda: grains_in_a_box().restore(grains_in_a_box(count=5).state()), "state.position"),
     ],
 )
 def test_wrong_input_is_refused_by_name(make, key):
     with pytest.raises(InputError, match=key):
         make()
+
+
+def test_one_pair_of_numbers_is_the_position_of_one_disc():
+    discs = make_discs((1.0, 2.0), 0.1, 1.0, velocity=(3.0, 4.0))
+    assert discs.position.tolist() == [[1.0, 2.0]]
+    assert discs.velocity.tolist() == [[3.0, 4.0]]
 
 
 def test_no_grains_is_a_system_too():

@@ -4,9 +4,10 @@
 that starts with ``$ `` is a command; it goes on where it ends with a backslash.  All run in one folder, empty at the
 start.  Of ``porescale`` and ``continuum-sph`` the page's Python runs the program with these arguments: a process for
 each would spend most of its time on imports and on reading kernels.  Other commands, and those of `PROCESSES`, run in a
-shell that has both and ``python``.  A comment before a block says what is special:
+shell that has both and ``python``.  A ```text block right after a block that runs says what that block prints, all of
+it; ``...`` in it stands for anything.  A comment before a block says what is special:
 
-    <!-- not run: reason -->        the block does not run
+    <!-- not run: reason -->        the block does not run, or is not what was printed
     <!-- file: NAME -->             the block, of any kind, is written to this file of the folder instead
     <!-- exit code: N -->           the last command of the block ends with N instead of 0
 """
@@ -17,16 +18,18 @@ import runpy
 import shlex
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Any
 
 from porescale.common.compiled import ahead
 from tests.reference.folders import DOCS, ROOT
 
 FOLDERS = ("first_hour", "howto", "develop")
-PAGES = sorted(path for folder in FOLDERS for path in (DOCS / folder).glob("*.md"))
+PAGES = sorted([*(path for folder in FOLDERS for path in (DOCS / folder).glob("*.md")), DOCS / "python.md"])
 BLOCK = re.compile(
     r"(?:^<!-- (?P<note>[^\n]*?) -->\n\s*)?^(?P<fence>`{3,}|:{3,})(?P<kind>[^\n`]*)\n(?P<code>.*?)^(?P=fence)\s*$",
     re.M | re.S,
@@ -65,6 +68,11 @@ class Snippet:
     def runs(self) -> bool:
         """Whether it is run or written."""
         return bool(self.file) or (self.kind in ("python", "console") and not self.note.startswith("not run"))
+
+    @property
+    def prints(self) -> bool:
+        """Whether it is what the block before it prints, where that one runs."""
+        return self.kind == "text" and not self.file and not self.note.startswith("not run")
 
     def commands(self) -> list[str]:
         """The lines of a console block that follow a prompt."""
@@ -113,9 +121,33 @@ def run_here(words: list[str]) -> int:
     return 0
 
 
+@contextmanager
+def printed() -> Iterator[list[str]]:
+    """What this process and those that it starts print meanwhile, as the list's one text afterwards; printed then."""
+    found: list[str] = []
+    sys.stdout.flush()
+    before = os.dup(1)
+    with TemporaryFile() as file:
+        os.dup2(file.fileno(), 1)
+        try:
+            yield found
+        finally:
+            sys.stdout.flush()
+            os.dup2(before, 1)
+            os.close(before)
+            file.seek(0)
+            found.append(file.read().decode())
+            print(found[0], end="", flush=True)
+
+
+def is_printed(stated: str, found: str) -> bool:
+    """Whether a text states what was found, where ``...`` stands for anything; spaces at the ends of lines are none."""
+    wanted, given = ("\n".join(line.rstrip() for line in it.strip().splitlines()) for it in (stated, found))
+    return re.fullmatch(".*".join(map(re.escape, wanted.split("..."))), given, re.S) is not None
+
+
 def run_command(command: str, alone: bool) -> int:
-    """Exit code of a command; what it prints is printed.  alone : in a process of its own, whatever it is."""
-    print(f"$ {command}", flush=True)
+    """Exit code of a command.  alone : in a process of its own, whatever it is."""
     words = shlex.split(command.replace("\\\n", ""))
     if not alone and words[0] in MODULES and not SHELL & set(command.replace("\\\n", "")):
         return run_here(words)
@@ -126,23 +158,36 @@ def main(page: Path) -> None:
     """Run a page here; an exception, or a SystemExit that names the line, where a block fails."""
     ahead.cores = lambda: 1  # no second process that compiles: the other core has the other worker
     names: dict[str, object] = {"__name__": "__main__"}
+    found: str | None = None
     for snippet in snippets(page.read_text(encoding="utf-8")):
-        if not snippet.runs:
-            continue
+        if snippet.prints and found is not None and not is_printed(snippet.code, found):
+            raise SystemExit(f"{page.name}, line {snippet.line}: is not what was printed:\n{found}")
+        found = None
         if snippet.file:
             Path(snippet.file).parent.mkdir(parents=True, exist_ok=True)
             Path(snippet.file).write_text(snippet.code, encoding="utf-8")
-        elif snippet.kind == "python":
+        elif snippet.runs:
+            found = run_block(snippet, page, names)
+
+
+def run_block(snippet: Snippet, page: Path, names: dict[str, object]) -> str:
+    """Run a block with the ``names`` of the page's Python; returns what it printed."""
+    if snippet.kind == "python":
+        with printed() as texts:
             exec(compile("\n" * (snippet.line - 1) + snippet.code, str(page), "exec"), names)
-        else:
-            commands = snippet.commands()
-            if not commands:
-                raise SystemExit(f"{page.name}, line {snippet.line}: no command; lines with one start with '$ '")
-            for command in commands:
-                due = snippet.code_at_end if command == commands[-1] else 0
-                code = run_command(command, alone=page.stem in PROCESSES)
-                if code != due:
-                    raise SystemExit(f"{page.name}, line {snippet.line}: exit code {code}, not {due}")
+        return texts[0]
+    commands, given = snippet.commands(), []
+    if not commands:
+        raise SystemExit(f"{page.name}, line {snippet.line}: no command; lines with one start with '$ '")
+    for command in commands:
+        due = snippet.code_at_end if command == commands[-1] else 0
+        print(f"$ {command}", flush=True)
+        with printed() as texts:
+            code = run_command(command, alone=page.stem in PROCESSES)
+        given += texts
+        if code != due:
+            raise SystemExit(f"{page.name}, line {snippet.line}: exit code {code}, not {due}")
+    return "".join(given)
 
 
 if __name__ == "__main__":

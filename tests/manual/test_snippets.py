@@ -18,7 +18,7 @@ WITH_CODE = [page for page in PAGES if any(it.runs for it in snippets(page.read_
 
 LONG = {"first_hour/film", "first_hour/python", "first_hour/sweep", "howto/error_bars", "howto/force_on_a_pipe",
         "howto/open_results", "howto/own_law", "howto/paper_figure", "howto/photograph", "howto/resume",
-        "howto/unsaturated"}  # fmt: skip
+        "howto/unsaturated", "python"}  # fmt: skip
 """Pages that run for ten seconds or more."""
 
 
@@ -64,6 +64,22 @@ $ porescale --version
 from pathlib import Path
 assert x == 2 and Path("words/some.txt").exists()
 ```
+```python
+print(x, "of", 3)
+for _ in range(3): print("again")
+```
+```text
+2 of 3
+again
+...
+```
+```console
+$ echo one  && echo "two three"
+```
+```text
+one
+two ...
+```
 <!-- exit code: 2 -->
 ```console
 $ porescale check no_such_case
@@ -79,8 +95,9 @@ def test_names_files_and_exit_codes_carry_on(tmp_path):
 
 @pytest.mark.parametrize(
     ("right", "wrong", "line"),
-    [("x == 2 and", "x == 3 and", "line 21"), ("code: 2", "code: 0", "line 25"), ("c words", "c verbs", "line 14"),
-     ("<!-- not run: takes a week -->\n", "", "line 6")],
+    [("x == 2 and", "x == 3 and", "line 21"), ("code: 2", "code: 0", "line 41"), ("c words", "c verbs", "line 14"),
+     ("<!-- not run: takes a week -->\n", "", "line 6"), ("2 of 3\nagain", "2 of 4\nagain", "line 28: is not what"),
+     ("again\n...", "again", "line 28: is not what"), ("two ...", "three ...", "line 36: is not what")],
 )  # fmt: skip
 def test_a_page_that_is_wrong_fails(right, wrong, line, tmp_path):  # the checks that must fail
     assert right in PAGE

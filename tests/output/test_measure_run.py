@@ -16,6 +16,7 @@ from porescale.common.record.drive import drive
 from porescale.common.schema.sections import scene_as_dict
 from porescale.scene.measures.probe import Probe
 from porescale.scene.measures.region import Region
+from tests.reference.scenes import column as bed
 from tests.reference.scenes import dry, water
 
 EPS = 2.0**-24
@@ -93,6 +94,14 @@ def test_regions_are_those_of_the_run(heap):
     moved = [{**it, "lower": [it["lower"][0] + 1e-4, 0.0]} for it in REGIONS]
     other = heap.measure(region=moved)["regions"]  # the check that must fail
     assert not np.array_equal(own["low porosity ()"], other["low porosity ()"])
+
+
+def test_regions_of_grains_in_fluid_carry_the_hydraulic_radius_ratio(tmp_path):
+    run = driven(bed(region=REGIONS, output__contacts=True, time__end=0.004), tmp_path)
+    table, own = run.measure(region=REGIONS)["regions"], run.table("regions")
+    assert list(own) == list(table)
+    assert list(own)[:2] == ["time (s)", "hydraulic radius ratio ()"]
+    assert set(table["hydraulic radius ratio ()"]) == set(own["hydraulic radius ratio ()"]) == {0.8}
 
 
 def test_regions_without_contacts_have_what_needs_none(heap, tmp_path):

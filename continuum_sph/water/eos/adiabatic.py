@@ -10,9 +10,12 @@ import numpy as np
 
 from continuum_sph.water.eos.law import Given, pressure_of
 from continuum_sph.water.eos.liquid import tait
+from porescale.common.core.ranges import Range, require_in_range
 from porescale.common.core.types import Floats
 
 EXPONENT = 1.403
+RANGES = {"density": Range("kg/m^3", gt=0), "base": Range("Pa", gt=0), "exponent": Range(gt=1)}
+"""What the numbers may be."""
 FLOOR = 0.01  # of ρ0: a bubble that has left the water keeps spreading; pressures stay numbers
 
 
@@ -34,13 +37,16 @@ def pressure_of_gas(ratio, law):
 
 @dataclass(frozen=True)
 class AdiabaticGas:
-    """density : ρ0, kg/m³, at the pressure p0;  base : p0, Pa;  exponent : γ."""
+    """density : ρ0, kg/m³, > 0, at the pressure p0;  base : p0, Pa, > 0;  exponent : γ, > 1.  InputError for others."""
 
     gas: ClassVar[bool] = True
 
     density: float
     base: float
     exponent: float = EXPONENT
+
+    def __post_init__(self) -> None:
+        require_in_range("gas", vars(self), RANGES)
 
     @classmethod
     def of(cls, given: Given) -> Self:

@@ -12,9 +12,12 @@ import numpy as np
 
 from continuum_sph.water.eos.law import Given, pressure_of
 from porescale.common.compiled.jit import inline
+from porescale.common.core.ranges import Range, require_in_range
 from porescale.common.core.types import Floats
 
 EXPONENT = 7.0
+RANGES = {"density": Range("kg/m^3", gt=0), "sound_speed": Range("m/s", gt=0), "exponent": Range(gt=1)}
+"""What the numbers may be.  The work of compression and the density at rest are not those of γ = 1."""
 FLOOR = 0.8  # of ρ0: least density, far below any that water at Mach 0.1 has
 
 
@@ -53,13 +56,16 @@ def tait_density(pressure, stiffness, exponent, density):
 
 @dataclass(frozen=True)
 class Tait:
-    """density : ρ0, kg/m³;  sound_speed : c0, m/s, at ρ0;  exponent : γ."""
+    """density : ρ0, kg/m³, > 0;  sound_speed : c0, m/s, at ρ0, > 0;  exponent : γ, > 1.  InputError for others."""
 
     gas: ClassVar[bool] = False
 
     density: float
     sound_speed: float
     exponent: float = EXPONENT
+
+    def __post_init__(self) -> None:
+        require_in_range("liquid", vars(self), RANGES)
 
     @classmethod
     def of(cls, given: Given) -> Self:

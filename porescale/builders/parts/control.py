@@ -1,6 +1,7 @@
 """Bodies whose motion is recorded: control.csv."""
 
 from porescale.builders.initial.rock import has_plates
+from porescale.builders.parts.flow_fields import ratio_column
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.record.part import Part
@@ -11,7 +12,7 @@ class ControlPart(Part):
 
     def __init__(self, system: System) -> None:
         assert system.grains
-        self.clock, self.grains = system.clock, system.grains
+        self.clock, self.grains, self.first = system.clock, system.grains, ratio_column(system.scene.grains)
         self.recorded = system.recorded[: -2 if has_plates(system.scene.rock) else None]
 
     def tables(self) -> dict[str, Row]:
@@ -26,7 +27,7 @@ class ControlPart(Part):
         NAME control force x (N/m) : what the control gives; likewise y
         NAME control moment (N m/m) : what the control gives
         """
-        row: Row = {"time (s)": self.clock.time}
+        row: Row = {"time (s)": self.clock.time} | self.first
         for name, line in zip(self.recorded, self.grains.steering.record(), strict=False):
             for what, values, units in (
                 ("displacement", line.displacement, ("m", "m", "rad")),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from porescale.builders.initial.frames import Placed, disc_count, free_rows
 from porescale.builders.initial.walls import WallPlaces, middles
+from porescale.builders.parts.flow_fields import ratio_column
 from porescale.builders.parts.frame_measures import solid_in
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
@@ -59,21 +60,22 @@ class GrainInstruments(Part):
             self.held = ~np.isin(np.arange(grains.discs.count), free_rows(grains, placed, system.held))
         friction = max(law.friction for law in grains.laws)
         self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
+        self.first = ratio_column(scene.grains)
 
     def tables(self) -> dict[str, Row]:
         """A row of regions.csv and of forces.csv, where the scene requests them."""
         tables: dict[str, Row] = {}
         if not (self.regions or self.walls):
             return tables
-        found, time = contacts(self.grains), self.clock.time
+        found, first = contacts(self.grains), {"time (s)": self.clock.time} | self.first
         if self.regions:
             loose = self.rattling(found)
-            tables["regions"] = {"time (s)": time}
+            tables["regions"] = dict(first)
             for name, region in self.regions:
                 row = region_row(self.grains, found, region, loose, self.held, self.placed)
                 tables["regions"] |= {f"{name} {column}": value for column, value in row.items()}
         if self.walls:
-            tables["forces"] = {"time (s)": time} | self._forces(found, self.walls)
+            tables["forces"] = first | self._forces(found, self.walls)
         return tables
 
     def rattling(self, found: Contacts) -> NDArray[np.bool_]:

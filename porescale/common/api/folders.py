@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import path_of
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
 
@@ -23,10 +24,11 @@ IN_PYTHON = Words("out", "resume=True", "overwrite=True")
 
 
 def named_folder(out: str | Path | None, name: str, key: str) -> Path:
-    """The folder that is asked for, ``name`` in runs/ where none is; InputError, naming ``key``, where it is empty."""
+    """The folder that is asked for, ``name`` in runs/ where none is; InputError, naming ``key``, where it is empty or
+    no path."""
     if out == "":
         raise InputError(Fault(key, out, "is empty", repair="name a folder"))
-    return Path("runs") / name if out is None else Path(out)
+    return Path("runs") / name if out is None else path_of(key, out, "name a folder")
 
 
 def check_folder(folder: Path, package: str, *, resume: bool, overwrite: bool, words: Words = TYPED) -> None:

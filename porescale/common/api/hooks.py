@@ -10,7 +10,8 @@ import numpy as np
 
 from porescale.common.api.hook_source import hash_of, source_of
 from porescale.common.core.errors import Fault, InputError, Unstable
-from porescale.common.record.schedule import Schedule, is_number, positive
+from porescale.common.core.ranges import is_number
+from porescale.common.record.schedule import Schedule, positive
 
 if TYPE_CHECKING:
     from porescale.common.core.types import AnyArray, Floats

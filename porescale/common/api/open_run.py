@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.extras import installed
+from porescale.common.core.given_file import path_of
 from porescale.common.core.html import Html, html_table, in_kernel, widget_bundle
 from porescale.common.record import open_run as record
 from porescale.common.record.columns import TIME, WIDE, Columns, missing
@@ -321,7 +322,7 @@ def open_run(folder: Path | str, program: Program) -> Run:
 
     One of another package or of `demseg` is read as well, but not painted or measured.
     """
-    lean = record.open_run(folder)
+    lean = record.open_run(path_of("folder", folder, "name a folder that `run` has written"))
     return Run(lean.folder, lean.card, dict(lean._frames), program)
 
 

@@ -92,15 +92,21 @@ class ShownSimulation(BaseSimulation):
         """Draw the state now, to scale, into ``ax`` (None: a new figure of pyplot); returns the axes.
 
         field : that colours cells, particles or dry grains, of `field_names` (None: what pictures of a run show);
-        limits : range of its colours, SI;  title : above the axes;  bar : a colour bar or legend beside them.
+        limits : range of its colours, low and high, SI;  title : above the axes;  bar : a colour bar or legend beside
+        them.  InputError where there is no such field, or the limits are no low and high number.
         """
         from porescale.common.pictures.axes import draw, size_of
 
         snapshot, look = self.snapshot(), self._look()
+        unit = ""
         if field is not None:
-            look = self._with_field(snapshot, look, field, self._named(field))
+            found = self._named(field)
+            look, unit = self._with_field(snapshot, look, field, found), found.unit
         if limits is not None:
-            look = replace(look, limits=limits, cloud_limits=limits)
+            from porescale.common.pictures.choose import limits_of
+
+            pair = limits_of("limits", limits, unit)
+            look = replace(look, limits=pair, cloud_limits=pair)
         if title is not None:
             look = replace(look, title=title)
         if ax is None:

@@ -6,6 +6,7 @@ import math
 import time as clock
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from numbers import Integral
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -13,10 +14,11 @@ import numpy as np
 
 from porescale.common.api.hooks import EveryHook, ForceFunction, ForceHook, Hook, SampleFunction, when
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import is_number
 from porescale.common.record.columns import Columns
 from porescale.common.record.model import variable_step
 from porescale.common.record.record import MADE_LATER
-from porescale.common.record.schedule import CHECK_EVERY, SLACK, block, is_number
+from porescale.common.record.schedule import CHECK_EVERY, SLACK, block
 from porescale.common.record.stop import polite_stop
 
 if TYPE_CHECKING:
@@ -59,7 +61,14 @@ class BaseSimulation(ABC):
 
     @abstractmethod
     def advance(self, steps: int) -> None:
-        """Do ``steps`` steps, and nothing else; may raise Unstable."""
+        """Do ``steps`` steps (0 or more), and nothing else; may raise Unstable.  InputError for other values."""
+
+    @staticmethod
+    def _require_steps(steps: int) -> None:
+        """InputError unless ``steps`` is a whole number from 0 on."""
+        if not (isinstance(steps, Integral) and steps >= 0):
+            repair = "give a whole number as 10"
+            raise InputError(Fault("steps", str(steps), "is no number of steps", allowed=">= 0, whole", repair=repair))
 
     @abstractmethod
     def check(self) -> None:

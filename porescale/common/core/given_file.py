@@ -1,12 +1,23 @@
-"""Files that people name, read whole: what reading would not end of, or not fit into memory, cannot be read."""
+"""Files that people name, read whole: what reading would not end of, or not fit into memory, cannot be read.
+
+Also paths that people give in Python."""
 
 import errno
 import os
 import stat
 from pathlib import Path
 
+from porescale.common.core.errors import Fault, InputError
+
 LARGEST = 256 * 2**20
 """Bytes of a file that is read whole: a list of a million circles has a tenth of it."""
+
+
+def path_of(key: str, given: str | Path, repair: str) -> Path:
+    """``given`` as a path; InputError, naming ``key``, where it is neither a text nor a path."""
+    if isinstance(given, str | os.PathLike):
+        return Path(given)
+    raise InputError(Fault(key, str(given), f"is no path ({type(given).__name__})", repair=repair))
 
 
 def require_finite(path: Path, most: int | None = None) -> None:

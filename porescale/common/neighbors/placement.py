@@ -12,6 +12,7 @@ import numpy as np
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, numbers, require_in_range
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.cells import minimum_image
 from porescale.common.neighbors.pair_list import PairList
@@ -21,6 +22,7 @@ INFLATED = 0.81  # fraction with the radii that are slid apart, larger than the 
 ROOMIEST = 1.05  # most that radii are enlarged by
 CLEAR = 1e-4  # least enlargement of radii: the end is then reached in finite time
 MOST_SWEEPS = 20_000
+LENGTH = Range("m")
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,11 @@ def place(
 
     Raises InputError for values out of range, or with the overlap left when the discs do not fit.
     """
+    low, high = numbers("lower", lower, (2,), LENGTH), numbers("upper", upper, (2,), LENGTH)
+    if not (low < high).all():
+        repair = "give the corners of a box"
+        raise InputError(Fault("upper", str(upper), "must lie right of and above lower", "m", f"> {lower}", repair))
+    require_in_range("place", {"seed": seed}, {"seed": Range(ge=0, whole=True)})
     size = (upper[0] - lower[0], upper[1] - lower[1])
     rng = np.random.default_rng(seed)
     if radii is None:
@@ -236,8 +243,19 @@ def glide(x, velocity, force, step, mixing):
             x[i, axis] += step * velocity[i, axis]
 
 
+def _check_lattice(lower: tuple[float, float], upper: tuple[float, float], spacing: float) -> None:
+    """InputError unless corners and spacing are lengths, m."""
+    for key, corner in (("lower", lower), ("upper", upper)):
+        numbers(f"lattice.{key}", corner, (2,), LENGTH)
+    require_in_range("lattice", {"spacing": spacing}, {"spacing": Range("m", gt=0)})
+
+
 def square_lattice(lower: tuple[float, float], upper: tuple[float, float], spacing: float) -> Floats:
-    """Positions (n, 2) m of a square lattice, half a ``spacing`` (m) inside the lower corner, row after row."""
+    """Positions (n, 2) m of a square lattice, half a ``spacing`` (m) inside the lower corner, row after row.
+
+    Raises InputError where the spacing is not positive or a corner is no pair of numbers.
+    """
+    _check_lattice(lower, upper, spacing)
     columns, rows = (round((upper[a] - lower[a]) / spacing) for a in (0, 1))
     xs = lower[0] + (np.arange(columns) + 0.5) * spacing
     ys = lower[1] + (np.arange(rows) + 0.5) * spacing
@@ -246,7 +264,11 @@ def square_lattice(lower: tuple[float, float], upper: tuple[float, float], spaci
 
 
 def triangular_lattice(lower: tuple[float, float], upper: tuple[float, float], spacing: float) -> Floats:
-    """Positions (n, 2) m of a triangular lattice of discs of diameter ``spacing`` (m) that fit inside the box."""
+    """Positions (n, 2) m of a triangular lattice of discs of diameter ``spacing`` (m) that fit inside the box.
+
+    Raises InputError as `square_lattice` does.
+    """
+    _check_lattice(lower, upper, spacing)
     rise = 0.5 * np.sqrt(3.0) * spacing
     width, height = upper[0] - lower[0], upper[1] - lower[1]
     fit = 1e-9  # of a spacing: a box of exactly n spacings holds n discs whatever its corners round to

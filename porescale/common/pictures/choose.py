@@ -122,10 +122,10 @@ class Wanted:
         if self.limits is not None:
             grid = made.painted(last)
             unit = grid.units.get(made.field, "") if grid else _unit(made, run)
-            pair = _limits("limits", self.limits, unit)
+            pair = limits_of("limits", self.limits, unit)
             made = replace(made, limits=pair) if grid else replace(made, cloud_limits=pair)
         if self.colour_limits is not None:
-            made = replace(made, cloud_limits=_limits("colour_limits", self.colour_limits, _unit(made, run)))
+            made = replace(made, cloud_limits=limits_of("colour_limits", self.colour_limits, _unit(made, run)))
         if self.arrows is not None:
             if not 0 <= self.arrows <= 500:
                 raise InputError(Fault("arrows", self.arrows, "is out of range", allowed="0 to 500"))
@@ -238,10 +238,11 @@ def _unit(look: Look, run: Run) -> str:
     return next((cloud.units.get(look.colouring(cloud), "") for cloud in clouds if look.colouring(cloud)), "")
 
 
-def _limits(key: str, pair: Pair, unit: str) -> tuple[float, float]:
-    """Two numbers, the lower first."""
-    if len(pair) != 2:
-        raise InputError(Fault(key, ", ".join(map(str, pair)), "must be two numbers, low and high", unit))
+def limits_of(key: str, pair: Pair, unit: str) -> tuple[float, float]:
+    """The limits of colours: two numbers in ``unit``, or texts with one, the lower first; InputError for others."""
+    if not hasattr(pair, "__len__") or isinstance(pair, str) or len(pair) != 2:
+        shown = ", ".join(map(str, pair)) if hasattr(pair, "__len__") and not isinstance(pair, str) else str(pair)
+        raise InputError(Fault(key, shown, "must be two numbers, low and high", unit, repair="give (low, high)"))
     own = Quantity("" if unit == "1" else unit, help="range of the colours")
     low, high = _number(key, pair[0], own), _number(key, pair[1], own)
     if not low < high:

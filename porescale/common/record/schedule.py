@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Iterable
-from numbers import Real
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import is_number
 from porescale.common.record.model import Model, variable_step
 
 NEVER = 1 << 62
@@ -112,8 +112,3 @@ def positive(key: str, value: float, *, endless: bool = False) -> float:
     if not number > 0 or (math.isinf(number) and not endless):
         raise InputError(Fault(key, value, "must be positive" + ("" if endless else " and finite"), unit="s"))
     return number
-
-
-def is_number(value: object) -> bool:
-    """Whether ``value`` is a real number, of Python or numpy."""
-    return isinstance(value, Real) or (getattr(value, "shape", None) == () and hasattr(value, "__float__"))

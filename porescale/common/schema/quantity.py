@@ -1,6 +1,5 @@
 """A field of a section that measures something: its unit, its range, and the error message when it is wrong."""
 
-import operator
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from types import UnionType
@@ -11,6 +10,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, PydanticUndefined, core_schema
 
 from porescale.common.core.errors import Fault
+from porescale.common.core.ranges import Range
 from porescale.common.core.units import to_si
 
 NUMBER = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?.*$"
@@ -32,24 +32,14 @@ class Refused(ValueError):
 
 
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(Range):
     """Marks a number, or every number of a tuple or list, as a quantity in ``unit`` with a range.
 
     As an annotation, ``Annotated[float, Quantity("m", gt=0)]``, or through `quantity`.  Words of a Literal in
     the same field (``float | Literal["auto"]``) and None, where the field allows it, pass.
     """
 
-    unit: str = ""
-    gt: float | None = None
-    ge: float | None = None
-    lt: float | None = None
-    le: float | None = None
     help: str = ""
-
-    def allowed(self) -> str:
-        """The range in words, without the unit: "> 0 and <= 1"; "" if every number is allowed."""
-        bounds = (("> ", self.gt), (">= ", self.ge), ("< ", self.lt), ("<= ", self.le))
-        return " and ".join(f"{sign}{bound:g}" for sign, bound in bounds if bound is not None)
 
     def repair(self) -> str:
         """How to correct a wrong value, as text."""
@@ -60,11 +50,6 @@ class Quantity:
         """A fault of this quantity at ``key``."""
         shown = value if isinstance(value, int | float | str) else None
         return Fault(key, shown, problem, self.unit, self.allowed(), repair or self.repair())
-
-    def contains(self, value: float) -> bool:
-        """Whether ``value`` (in ``unit``) lies in the range."""
-        bounds = (operator.gt, self.gt), (operator.ge, self.ge), (operator.lt, self.lt), (operator.le, self.le)
-        return all(bound is None or holds(value, bound) for holds, bound in bounds)
 
     def convert(self, value: Any, key: str = "", words: frozenset[str] = frozenset()) -> Any:
         """``value`` with every number and text in it as SI numbers; raises `Refused` with all faults."""

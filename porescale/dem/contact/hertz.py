@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, require_in_range
 from porescale.dem.contact.law import (
     CN,
     CR,
@@ -44,12 +45,19 @@ from porescale.dem.contact.law import (
     stored_normal,
 )
 from porescale.dem.contact.linear import series
-from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
+from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, restitution_of
 
 RENAMED = {"rolling_stiffness_ratio": "rolling_stiffness"}
 """Keys of [contact] that are called otherwise here."""
 TANGENT = 2.0 * math.sqrt(5.0 / 6.0)
 """Damping over sqrt(m dF/dd) and ratio h: of a d^(1/4) = TANGENT h sqrt(m 3/2 K sqrt(d))."""
+
+
+RANGES = {
+    "modulus": Range("Pa", gt=0), "shear_modulus": Range("Pa", ge=0), "damping_ratio": Range(ge=0),
+    "tangential_damping_ratio": Range(ge=0), "friction": Range(ge=0), "rolling_friction": Range(ge=0),
+    "rolling_stiffness": Range(ge=0), "rolling_damping_ratio": Range(ge=0), "deepest": Range(gt=0),
+}  # fmt: skip
 
 
 class HertzKernel(KernelLaw):
@@ -120,7 +128,7 @@ class Hertz:
     deepest: float = 0.02
 
     def __post_init__(self) -> None:
-        refuse(self, {"modulus": "Pa"}, positive=["modulus", "deepest"])
+        require_in_range("contact", vars(self), RANGES, {"release": RELEASES})
 
     @classmethod
     def of(
@@ -134,10 +142,10 @@ class Hertz:
     ) -> "Hertz":
         """Discs of Young's modulus ``young`` (Pa) and Poisson's ratio, dashpots all at the ratio of ``restitution``.
 
-        Raises InputError unless -1 < poisson <= 0.5.
+        Raises InputError unless young > 0 and -1 < poisson <= 0.5.
         """
-        if not -1.0 < poisson <= 0.5:
-            raise InputError(Fault("contact.poisson", poisson, allowed="-1 < nu <= 0.5"))
+        given = {"young": young, "poisson": poisson}
+        require_in_range("contact", given, {"young": Range("Pa", gt=0), "poisson": Range(gt=-1, le=0.5)})
         ratio = ratio_from_restitution(restitution, release)
         return cls(
             young / (2.0 * (1.0 - poisson**2)), young / (4.0 * (1.0 + poisson) * (2.0 - poisson)), ratio, ratio,

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, require_in_range
 from porescale.dem.contact.law import (
     CN,
     CR,
@@ -27,7 +28,13 @@ from porescale.dem.contact.law import (
     stiffness_scale,
     stored_normal,
 )
-from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
+from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, restitution_of
+
+RANGES = {
+    "stiffness": Range("N/m", gt=0), "damping": Range("N s/m", ge=0), "tangential_stiffness": Range("N/m", ge=0),
+    "tangential_damping": Range("N s/m", ge=0), "friction": Range(ge=0), "rolling_friction": Range(ge=0),
+    "rolling_stiffness": Range("N/m", ge=0), "rolling_damping": Range("N s/m", ge=0),
+}  # fmt: skip
 
 
 class LinearKernel(KernelLaw):
@@ -93,7 +100,7 @@ class Linear:
     rolling_damping: float = 0.0
 
     def __post_init__(self) -> None:
-        refuse(self, {"stiffness": "N/m", "damping": "N s/m"}, positive=["stiffness"])
+        require_in_range("contact", vars(self), RANGES, {"release": RELEASES})
 
     @classmethod
     def from_restitution(
@@ -107,7 +114,7 @@ class Linear:
         release: str = "force",
     ) -> "Linear":
         """The law whose normal coefficient of restitution is ``restitution`` at effective ``mass``
-        (kg/m).
+        (kg/m).  Raises InputError as damping_from_restitution does.
         """
         damping = damping_from_restitution(restitution, mass, stiffness, release)
         return cls(stiffness, damping, tangential_stiffness, tangential_damping, friction, release)
@@ -251,8 +258,11 @@ def series(one: float, other: float) -> float:
 def damping_from_restitution(restitution: float, mass: float, stiffness: float, release: str) -> float:
     """Damping c (N s/m) that gives ``restitution`` at effective ``mass`` (kg/m) and ``stiffness`` (N/m).
 
-    Raises InputError unless 0 < restitution <= 1 (release "overlap" also allows 0: critical damping).
+    Raises InputError unless 0 < restitution <= 1 (release "overlap" also allows 0: critical damping), and unless mass
+    and stiffness are positive.
     """
+    given = {"mass": mass, "stiffness": stiffness}
+    require_in_range("contact", given, {"mass": Range("kg/m", gt=0), "stiffness": RANGES["stiffness"]})
     return 2.0 * math.sqrt(stiffness * mass) * ratio_from_restitution(restitution, release)
 
 

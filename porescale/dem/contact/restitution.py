@@ -7,11 +7,8 @@ Sources: release at zero force, Schwager & Poeschel 2007, Granular Matter 9, 465
 """
 
 import math
-from collections.abc import Collection, Mapping
-from dataclasses import fields
-from typing import Any
 
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, require_in_range
 from porescale.common.core.roots import brent
 
 
@@ -38,9 +35,8 @@ def ratio_from_restitution(restitution: float, release: str) -> float:
 
     Raises InputError unless 0 < restitution <= 1 (release "overlap" also allows 0: critical damping).
     """
-    allowed = "0 <= e <= 1" if release == "overlap" else "0 < e <= 1"
-    if not (0.0 <= restitution <= 1.0) or (restitution == 0.0 and release == "force"):
-        raise InputError(Fault("contact.restitution", restitution, allowed=allowed))
+    allowed = Range(ge=0, le=1) if release == "overlap" else Range(gt=0, le=1)
+    require_in_range("contact", {"restitution": restitution}, {"restitution": allowed})
     if restitution == 1.0:
         return 0.0
     if restitution == 0.0:
@@ -56,18 +52,3 @@ def ratio_from_restitution(restitution: float, release: str) -> float:
         return h * contact_phase(h, release) - wanted
 
     return brent(excess, 0.0, highest, xtol=1e-15, rtol=1e-14)
-
-
-def refuse(law: Any, units: Mapping[str, str], positive: Collection[str]) -> None:
-    """Raise InputError naming every wrong number of ``law``, a dataclass: ``positive`` ones must be > 0, others >= 0.
-
-    units : by how names end, none else."""
-    faults = []
-    for key in [it.name for it in fields(law) if it.name != "release"]:
-        value, above, unit = getattr(law, key), key in positive, [units[end] for end in units if key.endswith(end)]
-        if not ((value > 0.0 if above else value >= 0.0) and math.isfinite(value)):
-            faults.append(Fault(f"contact.{key}", value, unit="".join(unit), allowed="> 0" if above else ">= 0"))
-    if law.release not in ("force", "overlap"):
-        faults.append(Fault("contact.release", law.release, allowed="force or overlap"))
-    if faults:
-        raise InputError(faults)

@@ -13,6 +13,7 @@ import numpy as np
 
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range, numbers
 from porescale.common.core.types import Floats
 from porescale.dem.contact.budget import SURFACES, add_contact_losses, add_release_losses, add_work, has_budget
 from porescale.dem.contact.law import (
@@ -71,7 +72,8 @@ class Box:
                     Fault(f"box.{one}", getattr(self, one), f"the {other} side is {getattr(self, other)}",
                           repair="make both sides periodic, or neither")
                 )  # fmt: skip
-        if not (self.lower[0] < self.upper[0] and self.lower[1] < self.upper[1]):
+        lower, upper = (numbers(f"box.{key}", getattr(self, key), (2,), Range("m")) for key in ("lower", "upper"))
+        if not (lower < upper).all():
             faults.append(
                 Fault("box.upper", self.upper, "must lie right of and above box.lower", "m", f"> {self.lower}")
             )

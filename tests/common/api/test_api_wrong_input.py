@@ -4,11 +4,12 @@ import pickle
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import continuum_sph
 import porescale
 from porescale.common.core.errors import InputError
-from tests.common.api.small import scene_of
+from tests.common.api.small import build, scene_of
 
 
 def test_a_scene_of_another_kind_is_named():
@@ -95,6 +96,51 @@ def test_a_run_is_opened_by_its_package_and_goes_to_other_processes(tmp_path):
     run.picture()
     for copy in (pickle.loads(pickle.dumps(run)), pickle.loads(pickle.dumps(run[-1])).run):
         assert np.array_equal(copy[-1]["grains"].position, run[-1]["grains"].position)
+
+
+@pytest.mark.parametrize("wrong", [None, 3, 3.5])
+def test_what_is_no_path_is_refused_where_a_path_is_meant(wrong):
+    for package in (porescale, continuum_sph):
+        with pytest.raises(InputError, match=f"^scene = '{wrong}': is no path"):
+            package.load(wrong)
+        with pytest.raises(InputError, match=f"^folder = '{wrong}': is no path"):
+            package.open_run(wrong)
+    if wrong is not None:
+        with pytest.raises(InputError, match=f"^out = '{wrong}': is no path"):
+            porescale.run(scene_of("dry"), wrong)
+        with pytest.raises(InputError, match=r"^settings = .*are no settings"):
+            porescale.load("column_collapse", settings=wrong)
+
+
+@pytest.mark.parametrize("kind", ["dry", "tank"])
+@pytest.mark.parametrize("steps", [3.0, -3, "3", None])
+def test_steps_to_advance_are_a_whole_number_from_0_on(kind, steps):
+    sim = build(scene_of(kind))
+    with pytest.raises(InputError, match=f"^steps = '{steps}': is no number of steps .allowed: >= 0, whole"):
+        sim.advance(steps)
+    assert sim.step == 0
+    sim.advance(np.int64(1))
+    assert sim.step == 1
+
+
+@pytest.mark.parametrize(
+    ("limits", "said"),
+    [
+        (3, "= '3': must be two numbers"),
+        ((1.0, 2.0, 3.0), "must be two numbers"),
+        ("ab", "= 'ab': must be two numbers"),
+        ((0.3, 0.0), "must be low and high; exchange them"),
+        ((float("nan"), 1.0), "is not finite"),
+    ],
+)
+def test_limits_of_colours_are_a_low_and_a_high_number(limits, said):
+    sim = build(scene_of("tank"))
+    axes = Figure().add_subplot()
+    with pytest.raises(InputError, match=f"^limits.*{said}"):
+        sim.plot(axes, field="speed", limits=limits)
+    with pytest.raises(InputError, match=f"^limits.*{said}"):
+        sim.plot(axes, limits=limits)
+    assert sim.plot(axes, field="speed", limits=(0.0, 0.3)) is axes
 
 
 def test_completion_offers_sections_and_what_a_scene_can_do():
