@@ -13,7 +13,9 @@ from continuum_sph.builders.parts.water import water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
 from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import water_report
+from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.face import face_names
+from continuum_sph.scene.names import names_of
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
@@ -27,6 +29,7 @@ REACH = 1.05  # h over the distance of water's particles in pores: with less a f
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
 STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level with less than `RATIO` spacings
 STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
+BROAD, APART = 6.0, 3.0  # spacings of open water in a strip that keeps its level, and from it to the ground
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
 
@@ -132,11 +135,22 @@ def levels(scene: Scene, out: Report, *, wetted: bool) -> None:
 
     wetted : there are pores without water.
     """
-    numerics, porosity = scene.numerics, soil_section(scene).porosity
+    numerics, section = scene.numerics, soil_section(scene)
+    spacing, porosity = numerics.spacing, section.porosity
     out.heading("prescribed levels")
-    for number, it in enumerate(scene.reservoir):
-        breadth = (it.right - it.left) / numerics.spacing
-        out.row(it.name or f"reservoir {number}", it.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
+    for name, it in zip(names_of(scene.reservoir, "reservoir"), scene.reservoir, strict=True):
+        breadth = (it.right - it.left) / spacing
+        out.row(name, it.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
+        if breadth < BROAD - WHOLE:
+            out.warn(
+                f"the strip of {name} is {breadth:.3g} spacings broad, at least {BROAD:g} keep a level: widen it to "
+                f"{BROAD * spacing:.3g} m, or lower numerics.spacing to {(it.right - it.left) / BROAD:.2g} m"
+            )
+        if it.ground(section, spacing, APART * spacing) > it.bottom:
+            out.warn(
+                f"the strip of {name} lies closer than {APART:g} spacings to the ground, and its level is disturbed: "
+                f"leave {APART * spacing:.3g} m between them, or lower numerics.spacing"
+            )
     reach = numerics.smoothing_ratio * porosity**0.5
     out.row("smoothing length over distances in pores", reach, "", f"at least {REACH:g}")
     if reach < REACH and wetted:
