@@ -1,5 +1,6 @@
 """The section of prescribed water levels."""
 
+import math
 from collections.abc import Sequence
 from typing import Annotated
 
@@ -51,7 +52,7 @@ class ReservoirSection(Section):
         Minus infinity where there is none; spacing : of the particles, m.
         """
         first, last = (round(it / spacing, 6) for it in (self.left - beside, self.right + beside))
-        columns = (np.arange(np.floor(max(first, 0.0)), np.ceil(last)) + 0.5) * spacing
+        columns: Floats = (np.arange(math.floor(max(first, 0.0)), math.ceil(last), dtype=np.float64) + 0.5) * spacing
         top: Floats = np.max([body.top(columns) for body in soil.body], axis=0, initial=-np.inf)
         highest = float(top.max(initial=-np.inf))
         return highest if highest > self.bottom + (0.5 + WHOLE) * spacing else -np.inf
