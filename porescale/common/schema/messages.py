@@ -109,7 +109,7 @@ def _fault(
     if kind in ("bool_type", "bool_parsing"):
         return Fault(name, shown, "is neither true nor false", repair=f"give true or false ({help})" if help else "")
     if kind in ("tuple_type", "list_type") and isinstance(value, Mapping):
-        return Fault(name, None, "is one table of a list", repair=f"write [[{name}]] and its keys below")
+        return Fault(name, None, "is not a list", repair=f"write [[{name}]] and its keys below")
     if kind in ("tuple_type", "list_type"):
         return Fault(name, shown, "is not a list", unit, allowed, "write it as [ … ]")
     for sign, bound in ((">", "gt"), (">=", "ge"), ("<", "lt"), ("<=", "le")):

@@ -5,9 +5,10 @@ import pytest
 from continuum_sph.builders.report import report
 from continuum_sph.builders.reports.seepage_report import OPEN_RATE, RATE, bare_exit
 from continuum_sph.builders.simulation import Simulation
+from continuum_sph.look import look_of_scene
 from continuum_sph.scene.sections import Scene
 from porescale.common.duration.expected import STEPS
-from porescale.common.schema.sections import validate
+from porescale.common.schema.sections import scene_as_dict, validate
 
 WIDE = [[0, 0], [1, 0], [1, 0.4], [0, 0.4]]
 SMALL = [[0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]]
@@ -108,6 +109,12 @@ def test_an_exit_through_bare_ground_beside_a_pile_is_doubted():
     full = {"tank": {"width": 1.0, "height": 0.4}, "depth": 0.0, "water": {"sound_speed": 60.0}}
     faces = [{"side": "lid", "end": 0.45, "head": 0.6}, {"side": "lid", "start": 0.5, "head": 0.4}]
     assert not said(piled(0.0, 0.0, face=faces, **full))
+
+
+def test_the_sheet_is_drawn_in_the_column_that_stands_for_it():
+    (x, low), (same, high) = look_of_scene(scene_as_dict(piled(0.6, 0.5, pile={"x": 0.45, "tip": 0.15})), "").lines[-1]
+    assert x == same == pytest.approx(0.475, rel=1e-12)
+    assert (low, high) == (0.15, 0.8)
 
 
 def test_check_says_where_the_sheet_stands():
