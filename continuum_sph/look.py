@@ -31,6 +31,7 @@ def look_of_scene(
     scene: Mapping[str, Any], name: str, surface: Callable[[Snapshot], Sequence[Line]] | None = None
 ) -> Look:
     """The look of a scene, as on a run card.  surface : of the water in soil, where it is known."""
+    from continuum_sph.scene.pile import SheetPileSection  # pydantic takes longer to import than a page to be asked for
     from porescale.common.pictures.choose import with_section
     from porescale.common.pictures.look import Look
 
@@ -40,7 +41,8 @@ def look_of_scene(
         corners.append(corners[0])
     lines = list(pairwise(corners))
     if pile := scene.get("pile"):
-        lines.append(((pile["x"], pile["tip"]), (pile["x"], height)))
+        at = SheetPileSection.model_validate(pile).column(scene["numerics"]["spacing"])
+        lines.append(((at, pile["tip"]), (at, height)))
     margin = 0.02 * width
     more: dict[str, Any] = {"colour": "velocity"}
     if scene["soil"] and scene["soil"].get("suction"):

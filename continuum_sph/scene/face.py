@@ -6,6 +6,8 @@ from typing import Literal
 import numpy as np
 import pydantic
 
+from continuum_sph.scene.bounds import WHOLE
+from continuum_sph.scene.names import name_faults, names_of
 from continuum_sph.scene.soil import SoilSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
@@ -57,6 +59,9 @@ class FaceSection(Section):
             if value > longest * (1.0 + 1e-9):
                 return [Fault(f"{key}.{name}", value, "lies beyond the side", "m", f"<= {longest:g}")]
         if len(self.along(size, spacing)) < 2:
+            if longest < (2.0 - WHOLE) * spacing:
+                return [Fault("numerics.spacing", spacing, f"leaves {key} fewer than 2 rows of particles", "m",
+                              f"<= {0.5 * longest:g}")]  # fmt: skip
             few = "leaves fewer than 2 rows of particles"
             if self.end is None or start + 2.0 * spacing > longest:
                 return [Fault(f"{key}.start", start, few, "m", f"<= {longest - 2.0 * spacing:g}")]
@@ -72,7 +77,7 @@ def face_faults(
     faces: Sequence[FaceSection], soil: SoilSection | None, lid: bool, size: Size, spacing: float
 ) -> list[Fault]:
     """What is wrong with the faces of a tank of a ``size`` (width, height), m, with particles of a ``spacing``, m."""
-    found, names = [], face_names(faces)
+    found = []
     full = soil.body if soil is not None and soil.saturated else ()
     if faces and not full:
         found.append(Fault("face", "given", "needs ground whose pores are full",
@@ -90,11 +95,9 @@ def face_faults(
             (start, end), (begin, stop) = it.reach(size), other.reach(size)
             if other.side == it.side and min(end, stop) - max(start, begin) > 0.5 * spacing:
                 found.append(Fault(key, it.side, f"overlaps face[{j}]", repair="move or shorten one of them"))
-        if names[k] in names[:k]:
-            found.append(Fault(f"{key}.name", names[k], "is that of another face", repair="rename it"))
-    return found
+    return found + name_faults("face", faces, "face")
 
 
 def face_names(faces: Sequence[FaceSection]) -> list[str]:
     """Names of the faces in columns and messages."""
-    return [it.name or f"face {number}" for number, it in enumerate(faces)]
+    return names_of(faces, "face")

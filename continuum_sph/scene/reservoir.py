@@ -1,9 +1,24 @@
 """The section of prescribed water levels."""
 
+import math
+from collections.abc import Sequence
+from typing import Annotated
+
+import numpy as np
 import pydantic
 
+from continuum_sph.scene.bounds import WHOLE
+from continuum_sph.scene.names import name_faults
+from continuum_sph.scene.soil import SoilSection
 from porescale.common.core.errors import Fault
+from porescale.common.core.types import Floats
+from porescale.common.schema.quantity import Quantity
 from porescale.common.schema.sections import Section, quantity
+
+Row = tuple[
+    Annotated[float, Quantity("s", ge=0, help="time from the start")],
+    Annotated[float, Quantity("m", ge=0, le=1e5, help="level at a time")],
+]
 
 
 class ReservoirSection(Section):
@@ -19,7 +34,7 @@ class ReservoirSection(Section):
     right: float = quantity("m", ge=0, le=1e5, help="right end of the strip")
     bottom: float = quantity("m", 0.0, ge=0, le=1e5, help="height of the ground below it")
     level: float | None = quantity("m", None, ge=0, le=1e5, help="level, for ever")
-    rise: tuple[tuple[float, float], ...] = pydantic.Field(default=(), description="rows of time (s) and level (m)")
+    rise: tuple[Row, ...] = pydantic.Field(default=(), description="rows of time (s) and level (m)")
 
     @property
     def table(self) -> tuple[tuple[float, float], ...]:
@@ -31,20 +46,59 @@ class ReservoirSection(Section):
         """Highest level of the table, m; 0 without one."""
         return max((level for _, level in self.table), default=0.0)
 
+    def ground(self, soil: SoilSection, spacing: float, beside: float = 0.0) -> float:
+        """Height (m) of the highest ``soil`` at the start above the strip's bottom, in it or ``beside`` it so far, m.
+
+        Minus infinity where there is none; spacing : of the particles, m.
+        """
+        first, last = (round(it / spacing, 6) for it in (self.left - beside, self.right + beside))
+        columns: Floats = (np.arange(math.floor(max(first, 0.0)), math.ceil(last), dtype=np.float64) + 0.5) * spacing
+        top: Floats = np.max([body.top(columns) for body in soil.body], axis=0, initial=-np.inf)
+        highest = float(top.max(initial=-np.inf))
+        return highest if highest > self.bottom + (0.5 + WHOLE) * spacing else -np.inf
+
     def faults(self, key: str, width: float, height: float, spacing: float) -> list[Fault]:
         """What is wrong with it in a tank of ``width`` by ``height``, m, with particles of a ``spacing``, m."""
         found = []
         if (self.level is None) == (not self.rise):
             found.append(Fault(key, None, "needs a level or a rise, and not both", repair="give one of them"))
-        if self.right - self.left < 2.0 * spacing:
+        if self.right - self.left < (2.0 - WHOLE) * spacing:
             found.append(Fault(f"{key}.right", self.right, "leaves fewer than 2 particles across", "m",
                                f">= {self.left + 2.0 * spacing:g}"))  # fmt: skip
         if self.right > width * (1.0 + 1e-9):
             found.append(Fault(f"{key}.right", self.right, "lies outside of the tank", "m", f"<= {width:g}"))
         if any(later <= earlier for (earlier, _), (later, _) in zip(self.rise, self.rise[1:], strict=False)):
             found.append(Fault(f"{key}.rise", [time for time, _ in self.rise], "has times that do not rise", "s"))
+        given = "rise" if self.level is None else "level"
         for time, level in self.table:
             if not self.bottom <= level <= height:
-                found.append(Fault(f"{key}.level", level, f"at {time:g} s lies below its bottom or over the tank", "m",
-                                   f"{self.bottom:g} to {height:g}"))  # fmt: skip
+                problem = f"at {time:g} s lies below its bottom or over the tank"
+                found.append(Fault(f"{key}.{given}", level, problem, "m", f"{self.bottom:g} to {height:g}"))
         return found
+
+
+def reservoir_faults(
+    reservoirs: Sequence[ReservoirSection], soil: SoilSection | None, size: tuple[float, float], spacing: float
+) -> list[Fault]:
+    """What is wrong with the reservoirs of a tank of a ``size`` (width, height), m, with particles of a ``spacing``, m.
+
+    With suction a strip may reach into ground: there are no particles of water in it.
+    """
+    found = name_faults("reservoir", reservoirs, "reservoir")
+    for k, it in enumerate(reservoirs):
+        key = f"reservoir[{k}]"
+        wrong = it.faults(key, *size, spacing)
+        found += wrong
+        for j, other in enumerate(reservoirs[:k]):
+            shared = min(it.right, other.right) - max(it.left, other.left)
+            if shared > WHOLE * spacing:
+                found.append(Fault(key, None, f"overlaps reservoir[{j}] by {shared:g} m",
+                                   repair="move or narrow one of them"))  # fmt: skip
+        if wrong or soil is None or soil.suction is not None:
+            continue
+        top = it.ground(soil, spacing)
+        if top > it.bottom:
+            problem = f"has ground in its strip, up to {top:g} m, and its water stands on what is open"
+            found.append(Fault(f"{key}.bottom", it.bottom, problem, "m",
+                               repair=f"move it off the ground, or give bottom = {top:g}"))  # fmt: skip
+    return found

@@ -12,10 +12,11 @@ from continuum_sph.scene.face import FaceSection, face_faults
 from continuum_sph.scene.inclusion import InclusionSection
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.scene.material_file import with_material
+from continuum_sph.scene.names import name_faults
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.output import OutputSection, TimeSection
 from continuum_sph.scene.pile import SheetPileSection
-from continuum_sph.scene.reservoir import ReservoirSection
+from continuum_sph.scene.reservoir import ReservoirSection, reservoir_faults
 from continuum_sph.scene.soil import SoilSection
 from continuum_sph.scene.tank import TankSection
 from continuum_sph.scene.water import Column, WaterSection
@@ -109,8 +110,7 @@ class Scene(SceneBase):
             faults += self.soil.suction.faults(self) if self.soil.suction else []
         elif not self.water.column:
             faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
-        for index, section in enumerate(self.reservoir):
-            faults += section.faults(f"reservoir[{index}]", *self.inner, spacing)
+        faults += reservoir_faults(self.reservoir, self.soil, self.inner, spacing)
         if self.soil is not None:
             faults += self._wet_soil(self.soil)
         faults += face_faults(self.face, self.soil, tank.lid, self.inner, spacing)
@@ -177,8 +177,9 @@ class Scene(SceneBase):
         return found
 
     def _unseen(self) -> list[Fault]:
-        """Probes and levels that lie outside of the tank."""
-        found, (width, height) = [], (self.tank.width, self.tank.height)
+        """Probes and levels that lie outside of the tank, or whose names make no columns."""
+        found = name_faults("probe", self.probe, "probe") + name_faults("level", self.level, "level")
+        width, height = self.tank.width, self.tank.height
         for k, it in enumerate(self.probe):
             if it.x > width or it.y > height:
                 found.append(Fault(f"probe[{k}]", (it.x, it.y), "lies outside of the tank", "m"))
@@ -202,6 +203,9 @@ class Scene(SceneBase):
             if there and soil.water_table is not None:
                 faults.append(Fault("soil.water_table", soil.water_table, f"cannot be with {key}", "m",
                                     repair="take out one of them"))  # fmt: skip
+        if soil.water_table is not None and soil.water_table > (1.0 + WHOLE) * self.tank.height:
+            faults.append(Fault("soil.water_table", soil.water_table, "lies over the tank", "m",
+                                f"<= {self.tank.height:g}"))  # fmt: skip
         if soil.held and soil.watch:
             faults.append(Fault("soil.watch", "given", "has no displacement in soil that is held",
                                 repair="take out soil.watch or soil.held"))  # fmt: skip

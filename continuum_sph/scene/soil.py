@@ -8,6 +8,7 @@ import pydantic
 from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import Origin
+from continuum_sph.scene.names import name_faults
 from continuum_sph.scene.suction import SuctionSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
@@ -159,10 +160,7 @@ class SoilSection(Section):
             for x, y in body.outline:
                 if not (-slack <= x <= width + slack and -slack <= y <= height + slack):
                     found.append(Fault(key, (x, y), "lies outside of the tank", "m"))
-        names = [it.name or f"part {number}" for number, it in enumerate(self.watch)]
-        for number, name in enumerate(names):
-            if name in names[:number]:
-                found.append(Fault(f"soil.watch[{number}].name", name, "is that of another part", repair="rename it"))
+        found += name_faults("soil.watch", self.watch, "part")
         if self.dilatancy_angle > self.friction_angle:
             found.append(
                 Fault("soil.dilatancy_angle", self.dilatancy_angle, "makes soil that gives energy as it shears",

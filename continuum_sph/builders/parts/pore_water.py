@@ -78,18 +78,34 @@ def submerge(scene: Scene, ground: SoilFlow) -> None:
     soil.stress[:n] *= (1.0 - np.minimum(1.0, lost / upright))[:, None]
 
 
-def saturate(scene: Scene, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
-    """Places, velocities (n, 2) and densities (n,) of water with that in pores of ``soil`` (s, 2) m that have none and
-    lie under the surface of the ground or the water table: at rest."""
+def pore_water(scene: Scene, soil: Floats) -> tuple[Floats, Floats]:
+    """Places (k, 2) m of the water in pores of ``soil`` (s, 2) m that no column of water holds and that are full at the
+    start, and their depths (k,) m under the surface of the ground or the water table."""
     pores = dry_pores(scene.water.column, soil)
     top = wet_top(scene, pores)
     if top is None:
-        return x, v, rho
+        return np.zeros((0, 2)), np.zeros(0)
     if soil_section(scene).water_table is not None:
         under = pores[:, 1] < top
         pores, top = pores[under], top[under]
-    more = water_state(scene).settled_density(top - pores[:, 1], scene.gravity)
+    return pores, top - pores[:, 1]
+
+
+def saturate(scene: Scene, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
+    """Places, velocities (n, 2) and densities (n,) of water with that in pores of ``soil`` (s, 2) m that have none and
+    lie under the surface of the ground or the water table: at rest."""
+    pores, depth = pore_water(scene, soil)
+    more = water_state(scene).settled_density(depth, scene.gravity)
     return np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores))), np.concatenate((rho, more))
+
+
+def water_counts(scene: Scene, soil: Floats) -> tuple[int, int]:
+    """Particles of water in the tank at the start, those in pores of ``soil`` (s, 2) m included, and particles that
+    wait for reservoirs to let them in."""
+    x = np.concatenate((water_particles(scene, pore_law(scene))[0], pore_water(scene, soil)[0]))
+    if scene.pile:
+        x = x[~sheet_pile(scene.pile, scene.numerics.spacing).holds(x)]
+    return len(x), spare(scene, x)
 
 
 def ground_of(scene: Scene) -> tuple[SoilFlow | Frame, Skeleton]:

@@ -19,7 +19,7 @@ from continuum_sph.builders.sanity import (
 )
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.soil import SoilSection
+from continuum_sph.scene.soil import Body, SoilSection
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw, porosity
 from continuum_sph.soil.parameters import RULES
@@ -30,6 +30,7 @@ from continuum_sph.water.image_walls import facing
 from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList, square_lattice
 from porescale.common.record.model import Cloud, Snapshot
@@ -321,19 +322,29 @@ def soil_law(scene: Scene) -> SoilLaw:
     )
 
 
+def unfilled(key: str, body: Body) -> Fault:
+    """The fault of an outline, of a ``body`` at a ``key``, in which there is no particle of soil."""
+    repair = "move or widen it, or lower numerics.spacing"
+    return Fault(key, body.outline[0], "holds no particle of soil", "m", repair=repair)
+
+
 def soil_particles(scene: Scene) -> tuple[Floats, Floats]:
-    """Positions (n, 2) m and stresses (n, 4) Pa of a scene's soil at the start."""
+    """Positions (n, 2) m and stresses (n, 4) Pa of a scene's soil at the start; InputError where a body holds none."""
     section, spacing = soil_section(scene), scene.numerics.spacing
     corners = [corner for body in section.body for corner in body.outline]
     right, above = (min(scene.inner[a], max(corner[a] for corner in corners) + spacing) for a in (0, 1))
     lattice = square_lattice((0.0, 0.0), (right, above), spacing)  # a tank may be far wider than its ground
-    inside = np.zeros(len(lattice), np.bool_)
+    inside, empty = np.zeros(len(lattice), np.bool_), []
     top = np.full(len(lattice), -np.inf)
-    for body in section.body:
-        inside |= body.holds(lattice)
+    free = ~sheet_pile(scene.pile, spacing).holds(lattice) if scene.pile else np.ones(len(lattice), np.bool_)
+    for number, body in enumerate(section.body):
+        own = body.holds(lattice) & free
+        if not own.any():
+            empty.append(unfilled(f"soil.body[{number}].outline", body))
+        inside |= own
         top = np.maximum(top, body.top(lattice[:, 0]))
-    if scene.pile:
-        inside &= ~sheet_pile(scene.pile, spacing).holds(lattice)
+    if empty:
+        raise InputError(empty)
     x = lattice[inside]
     if section.stress == "none":
         return x, np.zeros((len(x), 4))

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.builders.parts.soil import SoilPart, soil_particles, soil_section
+from continuum_sph.builders.parts.soil import SoilPart, soil_particles, soil_section, unfilled
 from continuum_sph.scene.sections import Scene
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import InputError
 from porescale.common.record.part import Part
 
 
@@ -33,7 +33,6 @@ def watched_rows(scene: Scene) -> dict[str, NDArray[np.int64]]:
     for number, part in enumerate(section.watch):
         rows = np.flatnonzero(part.holds(x))
         if not len(rows):
-            key, repair = f"soil.watch[{number}].outline", "move or widen it, or lower numerics.spacing"
-            raise InputError(Fault(key, part.outline[0], "holds no particle of soil", "m", repair=repair))
+            raise InputError(unfilled(f"soil.watch[{number}].outline", part))
         found[part.name or f"part {number}"] = rows
     return found

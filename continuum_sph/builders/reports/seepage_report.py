@@ -1,19 +1,22 @@
 """The report of `check` on a scene of soil and water before it runs."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from continuum_sph.builders.parts.air import air_report, dry_pores
 from continuum_sph.builders.parts.faces import FARTHEST
-from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law
-from continuum_sph.builders.parts.sheet_pile import LEAST, ground_at, resolved, sheet_pile
+from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, water_counts
+from continuum_sph.builders.parts.sheet_pile import LEAST, OPEN, given_heads, ground_at, resolved
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
-from continuum_sph.builders.parts.water import water_state
+from continuum_sph.builders.parts.water import wall_layers, water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
 from continuum_sph.builders.reports.time_report import report_run
-from continuum_sph.builders.reports.water_report import water_report
+from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
+from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.face import face_names
+from continuum_sph.scene.names import names_of
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
@@ -23,10 +26,19 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 
 RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
+OPEN_RATE = 1.9e6  # the same of water in the open: 3 200 particles of a pond over 64 of held soil
+KIND = "soil and its water"
+"""Of what runs are made, under which their times are kept; "soil and water" were estimates without open water."""
+BYTES = 770  # per particle of water and walls, lists included: 3 200 of a pond
+HELD_BYTES, MOVING_BYTES = 1250, 1900  # per particle of soil, its list of the water about it included
 REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
 STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level with less than `RATIO` spacings
 STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
+BARE, COVERED = 0.2, 0.11
+"""By how much an exit gradient is low where flow leaves bare ground, and ground under four rows of water: s/T = 0.5 in
+10 rows of ground that is held, against finite differences."""
+BROAD, APART = 6.0, 3.0  # spacings of open water in a strip that keeps its level, and from it to the ground
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
 
@@ -40,24 +52,25 @@ def seepage_report(scene: Scene) -> Report:
     if section.porosity < LEAST_POROSITY:
         least = f">= {LEAST_POROSITY:g} with water"
         raise InputError(Fault("soil.porosity", section.porosity, "leaves water no room", "", least, "raise it"))
-    out = water_report(scene)
-    law, state = pore_law(scene), water_state(scene)
     soil, _ = soil_particles(scene)
+    water, waiting = water_counts(scene, soil)
+    out = water_report(scene, water)
+    law, state = pore_law(scene), water_state(scene)
     out.heading("soil")
     report_watched(scene, out)
     out.row("soil particles", len(soil))
     out.heading("soil and water")
     stiff = state.density * state.sound_speed**2
-    step = min(law.limits(0.0, state.sound_speed / law.smoothing.length))  # of air beside water, too
+    step = min(step_limits(scene, law))  # of air beside water, too
     if scene.gravity > 0.0:
         drag = section.permeability / (section.porosity * scene.gravity)
         out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
         step = min(step, moving(scene, out, stiff))
+    air = len(dry_pores(scene.water.column, soil)) if scene.air else 0
     if scene.air:
-        air_report(out, scene, law, len(dry_pores(scene.water.column, soil)))
-    report_run(out, scene, "soil and water", 2 * len(soil), scene.time.end / step, RATE)
-    report_output(out, scene.time.end, scene.output, round(scene.time.end / step), 1000.0 + 2.0 * SNAPSHOT * len(soil))
+        air_report(out, scene, law, air)
+    cost(scene, out, step, Counts(len(soil), water + air, waiting))
     report_origin(out, section.origin)
     if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < RATIO:
         out.warn(
@@ -73,6 +86,33 @@ def seepage_report(scene: Scene) -> Report:
     return out
 
 
+class Counts(NamedTuple):
+    """Particles of soil, of water and air in the tank at the start, and of water that waits for reservoirs."""
+
+    soil: int
+    fluid: int
+    waiting: int
+
+
+def cost(scene: Scene, out: Report, step: float, there: Counts) -> None:
+    """Rows on how many steps of ``step`` (s) a run has, the memory and the time that it takes, and what it writes."""
+    steps, fluid = scene.time.end / step, there.fluid + there.waiting
+    walls = wall_count(scene, wall_layers(pore_law(scene), scene.numerics.spacing))
+    out.heading("steps")
+    out.row("longest step of water and soil", step, "s")
+    out.row("steps", round(steps))
+    of_soil = HELD_BYTES if soil_section(scene).held else MOVING_BYTES
+    out.row("memory", (BYTES * (fluid + walls) + of_soil * there.soil) / 2**20, "MiB")
+    if there.waiting:
+        out.row("particles that wait", there.waiting, "", "for reservoirs to let them in")
+    # Pores are full, now or later: what else there is of water is in the open.
+    seconds = 2 * there.soil / RATE + max(0, fluid - there.soil) / OPEN_RATE
+    particles = there.soil + fluid
+    report_run(out, scene, KIND, particles, steps, particles / seconds)
+    size = 1000.0 + SNAPSHOT * (there.soil + there.fluid)
+    report_output(out, scene.time.end, scene.output, round(steps), size)
+
+
 def moving(scene: Scene, out: Report, stiff: float) -> float:
     """Rows on soil that moves with water of a stiffness ρ c² (Pa), ``stiff``; the longest step (s) for their sound."""
     section, h = soil_section(scene), pore_law(scene).smoothing.length
@@ -82,7 +122,7 @@ def moving(scene: Scene, out: Report, stiff: float) -> float:
     out.row("modulus of a column at the floor", modulus, "Pa")
     out.row("longest step for its sound", min(soil_law(scene).limits(0.0, sound / h, float("inf"))), "s")
     out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
-    out.row("critical gradient", (section.density / density - (1.0 - porosity)), "", "(G_s - 1)(1 - n)")
+    out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
     if gravity > 0.0:
         spread = section.permeability * modulus / (density * gravity)
         out.row("consolidation coefficient", spread, "m2/s")
@@ -98,12 +138,19 @@ def moving(scene: Scene, out: Report, stiff: float) -> float:
     return step
 
 
+def critical_gradient(scene: Scene) -> float:
+    """Gradient of upward flow that bears all the weight of the ground under water: (G_s - 1)(1 - n)."""
+    section = soil_section(scene)
+    return section.density / scene.water.density - (1.0 - section.porosity)
+
+
 def pile_report(scene: Scene, out: Report) -> None:
     """Rows of particles beside and below the pile, and warnings where they are too few for what is measured there."""
     assert scene.pile is not None
-    spacing, tip = scene.numerics.spacing, scene.pile.tip
-    buried = ground_at(soil_section(scene), sheet_pile(scene.pile, spacing).x) - tip
+    spacing, tip, at = scene.numerics.spacing, scene.pile.tip, scene.pile.column(scene.numerics.spacing)
+    buried = ground_at(soil_section(scene), at) - tip
     out.heading("sheet pile")
+    out.row("stands at", at, "m", f"the middle of the column of particles that holds pile.x = {scene.pile.x:g} m")
     if buried <= 0.0:
         out.row("rows of ground beside it", 0.0)
         out.warn("the pile does not reach into the ground at the start: exit gradient () will be nan; lower pile.tip")
@@ -116,6 +163,12 @@ def pile_report(scene: Scene, out: Report) -> None:
             "to what lies between the first row and the tip; "
             f"numerics.spacing = {buried / LEAST:.2g} mends it"
         )
+    elif side := bare_exit(scene):
+        out.warn(
+            f"no water stands on the ground on the {side} of the pile, where flow comes out: exit gradient () is too "
+            f"low there, by {100 * BARE:.0f} % with 10 rows of ground over its base ({100 * COVERED:.0f} % under four "
+            "rows of water); let water stand on it, or give its head by a [[face]] of the lid"
+        )
     if tip == 0.0:
         out.warn(
             "pile.tip = 0 does not close the ground: the column of the pile ends a row above the base, and water passes"
@@ -127,16 +180,48 @@ def pile_report(scene: Scene, out: Report) -> None:
         )
 
 
+def bare_exit(scene: Scene) -> str:
+    """The side of the pile on which water comes out of ground with no water on it at the start, "" where there is none.
+
+    It comes out where the head is lower: of the water on the ground beside the pile, else that of the ground's surface.
+    """
+    assert scene.pile is not None
+    spacing = scene.numerics.spacing
+    at, reach = scene.pile.column(spacing), OPEN * spacing
+    top, given = ground_at(soil_section(scene), at), given_heads(scene.face, at, scene.inner, spacing)
+    heads = []
+    for side, known in zip((-1.0, 1.0), given, strict=True):
+        left, right = sorted((at + side * (0.5 + WHOLE) * spacing, at + side * reach))
+        tops = [it.bottom + it.height for it in scene.water.column if it.left < right and it.left + it.width > left]
+        # The water of a reservoir spreads over all that lies open on its side.
+        tops += [it.highest for it in scene.reservoir if side * (0.5 * (it.left + it.right) - at) > 0.0]
+        heads.append(max([top, *tops]) if known is None else known)
+    lower = int(heads[1] < heads[0])
+    covered = heads[lower] > top + 0.5 * spacing
+    return "" if covered or given[lower] is not None or heads[0] == heads[1] else ("left", "right")[lower]
+
+
 def levels(scene: Scene, out: Report, *, wetted: bool) -> None:
     """Rows on prescribed levels, and warnings about what keeps water from moving into soil as it should.
 
     wetted : there are pores without water.
     """
-    numerics, porosity = scene.numerics, soil_section(scene).porosity
+    numerics, section = scene.numerics, soil_section(scene)
+    spacing, porosity = numerics.spacing, section.porosity
     out.heading("prescribed levels")
-    for number, it in enumerate(scene.reservoir):
-        breadth = (it.right - it.left) / numerics.spacing
-        out.row(it.name or f"reservoir {number}", it.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
+    for name, it in zip(names_of(scene.reservoir, "reservoir"), scene.reservoir, strict=True):
+        breadth = (it.right - it.left) / spacing
+        out.row(name, it.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
+        if breadth < BROAD - WHOLE:
+            out.warn(
+                f"the strip of {name} is {breadth:.3g} spacings broad, at least {BROAD:g} keep a level: widen it to "
+                f"{BROAD * spacing:.3g} m, or lower numerics.spacing to {(it.right - it.left) / BROAD:.2g} m"
+            )
+        if it.ground(section, spacing, APART * spacing) > it.bottom:
+            out.warn(
+                f"the strip of {name} lies closer than {APART:g} spacings to the ground, and its level is disturbed: "
+                f"leave {APART * spacing:.3g} m between them, or lower numerics.spacing"
+            )
     reach = numerics.smoothing_ratio * porosity**0.5
     out.row("smoothing length over distances in pores", reach, "", f"at least {REACH:g}")
     if reach < REACH and wetted:
@@ -164,7 +249,9 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
     spread = section.permeability / (state.density * scene.gravity * storage)
     slow = STEADY_AFTER * (float(np.ptp(soil, axis=0).max()) + numerics.spacing) ** 2 / spread
     out.row("time until the flow is steady", slow, "s", "pressures have spread over the longer side of the ground")
-    steep, last = steepest(scene), scene.time.end
+    flows, last = gradients(scene), scene.time.end
+    steep = max((it.steep for it in flows), default=0.0)
+    lifting = max((it.steep for it in flows if it.upward), default=0.0)
     if steep > 0.0:
         seconds = FARTHEST * numerics.spacing * section.porosity / (section.permeability * steep)
         out.row("time in which water passes half a spacing", seconds, "s", "about; a run ends there")
@@ -180,14 +267,28 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
             f"flow is steady after some {slow:.2g} s, and the run ends at {last:.2g} s; "
             f"water.sound_speed = {math.ceil(speed):g} mends it"
         )
+    if not section.held and lifting > (critical := critical_gradient(scene)):
+        most = critical / lifting
+        out.warn(
+            f"flow comes out of the ground with a gradient of about {lifting:.2g}, and {critical:.2g} lifts it: it "
+            f"boils, and the run may become unstable; {most:.2g} of the difference of heads would not lift it"
+        )
     if not section.held and steep > 0.0 and any(it.side == "lid" for it in scene.face):
         out.warn("the lid stops water and not soil: ground that flow lifts passes through it")
 
 
-def steepest(scene: Scene) -> float:
+class Gradient(NamedTuple):
+    """steep : head over way of a flow from one face to another, or to the open surface of the ground;  upward : whether
+    the water leaves the ground through its surface."""
+
+    steep: float
+    upward: bool
+
+
+def gradients(scene: Scene) -> list[Gradient]:
     """About how steep flow is between the faces of a scene, and from them to the surface of the ground where that is
     open: heads over the shortest way."""
-    spacing, found = scene.numerics.spacing, [0.0]
+    spacing, found = scene.numerics.spacing, []
     top = soil_section(scene).height
     places = [it.along(scene.inner, spacing) for it in scene.face]
     for k, (one, at) in enumerate(zip(scene.face, places, strict=True)):
@@ -197,7 +298,9 @@ def steepest(scene: Scene) -> float:
             way = float(np.hypot(*np.maximum(gap, 0.0)))
             if scene.pile and one.side == other.side == "lid":
                 way = max(way, 2.0 * (top - scene.pile.tip))
-            found.append(abs(one.head - other.head) / max(way, spacing))
+            lower = min(one, other, key=lambda it: it.head)
+            found.append(Gradient(abs(one.head - other.head) / max(way, spacing), lower.side == "lid"))
         if one.side != "lid" and not scene.tank.lid:
-            found.append(abs(one.head - max(top, scene.highest)) / max(top, spacing))
-    return max(found)
+            over = one.head - max(top, scene.highest)
+            found.append(Gradient(abs(over) / max(top, spacing), over > 0.0))
+    return found

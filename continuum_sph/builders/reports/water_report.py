@@ -6,7 +6,7 @@ from continuum_sph.builders.parts.water import wall_layers, water_law, water_sta
 from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.water.parameters import RULES
+from continuum_sph.water.parameters import RULES, Law
 from continuum_sph.water.smoothing import SUPPORT
 from porescale.common.api.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
@@ -20,16 +20,38 @@ SNAPSHOT = 60  # per particle of a snapshot on disk, about
 BYTES = 560  # per particle, walls included: 420 to 500 in plain columns, the small ones most, 560 with all choices
 
 
-def water_report(scene: Scene) -> Report:
-    """Resolution, sound, steps and cost; a warning above Mach 0.1, InputError above 0.3."""
+def wall_count(scene: Scene, layers: int) -> int:
+    """Particles of so many ``layers`` of the walls of a scene's tank."""
+    tank, spacing = scene.tank, scene.numerics.spacing
+    sides = 2 if tank.lid else 1
+    return round(2 * layers * tank.height / spacing + sides * layers * (tank.width / spacing + 2 * layers))
+
+
+def compression(scene: Scene) -> float:
+    """Share by which the water at the floor is denser than under no weight."""
+    tait = water_state(scene)
+    return float(tait.settled_density(scene.head, scene.gravity)) / tait.density - 1.0  # type: ignore[arg-type]
+
+
+def step_limits(scene: Scene, law: Law) -> tuple[float, ...]:
+    """Longest steps (s) by each of `RULES` for the fluids of a ``law`` under the highest head of a scene."""
+    tait = water_state(scene)
+    sound = tait.sound_speed * (1.0 + compression(scene)) ** (0.5 * (tait.exponent - 1.0))
+    return law.limits(2.0 * scene.gravity, max(sound, law.quickest) / law.smoothing.length)
+
+
+def water_report(scene: Scene, count: int | None = None) -> Report:
+    """Resolution, sound, steps and cost; a warning above Mach 0.1, InputError above 0.3.
+
+    count : particles of water, where soil holds some, too: steps and cost are then said with those of the soil.
+    """
     law, spacing = water_law(scene), scene.numerics.spacing
     tait, h, viscosity = water_state(scene), law.smoothing.length, scene.water.viscosity
     out = Report(scene.title or "water in a tank")
     water = sum(round(c.width / spacing) * round(c.height / spacing) for c in scene.water.column)
+    water = water if count is None else count
     layers = wall_layers(law, spacing)
-    tank = scene.tank
-    sides = 2 if tank.lid else 1
-    walls = round(2 * layers * tank.height / spacing + sides * layers * (tank.width / spacing + 2 * layers))
+    walls = wall_count(scene, layers)
     out.heading("resolution")
     out.row("water particles", water)
     out.row("wall particles", walls, "", f"{layers} layers")
@@ -45,8 +67,7 @@ def water_report(scene: Scene) -> Report:
     out.row("stiffness B", tait.stiffness, "Pa")
     out.row("speed of free fall from the highest water", fall, "m/s")
     out.row("Mach number", mach, "", "at most 0.1 keeps density changes below 1 %")
-    deepest = float(tait.settled_density(scene.head, scene.gravity)) / tait.density - 1.0  # type: ignore[arg-type]
-    out.row("compression at the floor", 100.0 * deepest, "%")
+    out.row("compression at the floor", 100.0 * compression(scene), "%")
     if viscosity > 0.0:
         out.row("Reynolds number", fall * scene.head * tait.density / viscosity)
     if scene.inclusion is not None:
@@ -56,16 +77,15 @@ def water_report(scene: Scene) -> Report:
         out.row("density over the water's", second.density / tait.density)
         out.row("particles across the smallest disc", 2.0 * min(d.radius for d in scene.inclusion.disc) / spacing)
     out.heading("steps")
-    sound = tait.sound_speed * (1.0 + deepest) ** (0.5 * (tait.exponent - 1.0))
-    limits = law.limits(2.0 * scene.gravity, max(sound, law.quickest) / h)
+    limits = step_limits(scene, law)
     for rule, limit in zip(RULES, limits, strict=True):
         out.row(f"longest step for {rule}", limit, "s")
     step = min(limits)
     out.row("limited by", RULES[limits.index(step)])
-    steps = scene.time.end / step
-    out.row("steps", round(steps))
-    out.row("memory", BYTES * (water + walls) / 2**20, "MiB")
-    if scene.soil is None:  # else the step is shorter
+    if count is None:
+        steps = scene.time.end / step
+        out.row("steps", round(steps))
+        out.row("memory", BYTES * (water + walls) / 2**20, "MiB")
         more = law.corrected or law.shifting > 0.0 or law.tension > 0.0
         kind, rate = ("water with more", RATE_OF_MORE) if more else ("water", RATE)
         report_run(out, scene, kind, water + walls, steps, rate)

@@ -40,7 +40,7 @@ def command(package: Package) -> Callable[..., int]:
         opened = open_scene(
             require_scene(scene, package.name), package.scene(), quality=quality, overrides=settings or ()
         )
-        report = package.report(opened.scene)
+        report = package.report_of(opened)
         if json:
             print(json_text.dumps(report.as_dict(), indent=1))
         else:

@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 from cyclopts import Parameter
@@ -33,7 +34,8 @@ def command(package: Package) -> Callable[..., int]:
             _draw(package, folder)
         except OSError as error:
             raise unusable(folder, "NAME", error) from error
-        print(f"{folder / 'scene.toml'}\nnext: {package.name} check {folder}; {package.name} run {folder}")
+        words = quote(str(folder))
+        print(f"{folder / 'scene.toml'}\nnext: {package.name} check {words}; {package.name} run {words}")
         return 0
 
     return new
@@ -57,7 +59,8 @@ def _copy(package: Package, name: str, folder: Path) -> None:
     case = next((it for it in cases() if it.name == name), None)
     if case is None:
         near = nearest_case(name)
-        repair = f"did you mean {near!r}? `porescale cases` lists all" if near else "`porescale cases` lists all"
+        every = f"`{package.name} cases` lists all"
+        repair = f"did you mean {near!r}? {every}" if near else every
         raise InputError(Fault("--from", name, "is no case", repair=repair))
     if folder.exists():
         _refuse(folder)
@@ -69,14 +72,15 @@ def _copy(package: Package, name: str, folder: Path) -> None:
     for path in sorted(folder.rglob("*")):
         if path.is_file():
             print(path)
+    words = quote(str(folder))
     if case.kind == "script":
-        print(f"next: python {folder / f'{case.name}.py'}")
+        print(f"next: python {quote(str(folder / f'{case.name}.py'))}")
     elif case.kind == "deck":
-        print(f"next: porescale demseg run {folder}")
+        print(f"next: porescale demseg run {words}")
     else:
         if case.package == package.name:
             _draw(package, folder)
-        print(f"next: {case.package} check {folder}; {case.package} run {folder}")
+        print(f"next: {case.package} check {words}; {case.package} run {words}")
 
 
 def _draw(package: Package, folder: Path) -> None:
@@ -91,7 +95,7 @@ def _draw(package: Package, folder: Path) -> None:
     if isinstance(scene, SceneBase) and scene.drawn_at_once:
         draw(scene, folder / "scene.png")
     else:
-        print(f"see it: {package.name} check {folder} --picture")
+        print(f"see it: {package.name} check {quote(str(folder))} --picture")
 
 
 def _refuse(taken: Path) -> None:

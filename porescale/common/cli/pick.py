@@ -40,7 +40,7 @@ def pick(
     def here(point: FrontPoint) -> Here:
         """The beginning of the point's scene, and the time it is to simulate, s, where its scene says that."""
         opened = open_scene(file, package.scene(), quality=point.quality, overrides=(*point.settings, *settings))
-        more = besides(package.report(opened.scene).work)  # what contradicts itself is refused
+        more = besides(package.report_of(opened).work)  # what contradicts itself is refused
         return begun(lambda: package.build(opened.scene), _end(opened.scene), more)
 
     try:

@@ -112,7 +112,8 @@ def remember(work: Work, taken: Mapping[str, float], began: Moment) -> None:
 
     taken : seconds of the phases in `LEARNT` on a quiet machine;  began : when it did.
     """
-    slower = {phase: taken[phase] / work.seconds[phase] for phase in LEARNT if taken.get(phase, 0.0) > 0.0}
+    both = [phase for phase in LEARNT if taken.get(phase, 0.0) > 0.0 and work.seconds[phase] > 0.0]
+    slower = {phase: taken[phase] / work.seconds[phase] for phase in both}
     now, kernels = moment(), [name for name in USED if name.endswith(KERNEL)] + [f"{it}{KERNEL}" for it in TURNS.kept]
     run = {"scene": work.scene, "kind": work.kind, "threads": _threads(), "slower": slower,
            "kernels": list(dict.fromkeys(kernels)), "compiled": now.compiled - began.compiled,

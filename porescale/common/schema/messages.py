@@ -106,6 +106,10 @@ def _fault(
         return Fault(f"{name}.{discriminator}", None, "is missing", "", ", ".join(tags), repair)
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return Fault(name, shown, "is not a section", repair=f"write [{name}] and its keys below")
+    if kind in ("bool_type", "bool_parsing"):
+        return Fault(name, shown, "is neither true nor false", repair=f"give true or false ({help})" if help else "")
+    if kind in ("tuple_type", "list_type") and isinstance(value, Mapping):
+        return Fault(name, None, "is not a list", repair=f"write [[{name}]] and its keys below")
     if kind in ("tuple_type", "list_type"):
         return Fault(name, shown, "is not a list", unit, allowed, "write it as [ … ]")
     for sign, bound in ((">", "gt"), (">=", "ge"), ("<", "lt"), ("<=", "le")):
@@ -114,6 +118,7 @@ def _fault(
             return Fault(name, shown, "is out of range", unit, f"{sign} {context[bound]}", repair)
     problem = str(item["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
     problem = problem[:1].lower() + problem[1:]
+    shown = value if shown is None and isinstance(value, list | dict) else shown
     return Fault(
         name, shown, problem.replace("input should be", "should be"), unit, allowed, f"give the {help}" if help else ""
     )

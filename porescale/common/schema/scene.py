@@ -79,7 +79,7 @@ class SceneBase(Section):
         Raises InputError with every fault, worded as those of a file.
         """
         if not isinstance(changes, Mapping):
-            repair = 'write it as scene.with_({"fluid.spacing": 0.001})'
+            repair = 'write it as scene.with_({"time.end": 0.1})'
             raise InputError(Fault("with_", type(changes).__name__, "is no mapping of keys to values", repair=repair))
         table: Mapping[str, Any] = self._written
         keys: list[Key] = []

@@ -113,7 +113,7 @@ NAME = r"[\w-]+(\[\d+\])*(\.[\w-]+(\[\d+\])*)*"
 def parse_name(name: str) -> Key:
     """``section.key`` as a key; InputError if it is none."""
     if not isinstance(name, str) or not re.fullmatch(NAME, name):
-        raise InputError(Fault(repr(name), None, "is not section.key", repair='write it as "fluid.spacing"'))
+        raise InputError(Fault(repr(name), None, "is not section.key", repair='write it as "time.end"'))
     key = parse_key(name)
     if len(key) > DEEPEST:
         problem = "has tables or lists within each other without end"
@@ -145,7 +145,7 @@ def parse_setting(text: str) -> tuple[Key, Any]:
     """``section.key=value`` as key and value (a TOML value, else the text itself); else InputError."""
     name, equals, value = text.partition("=")
     if not equals or not re.fullmatch(NAME, name.strip()):
-        repair = "write it as --set fluid.spacing=0.001"
+        repair = "write it as --set time.end=0.1"
         raise InputError(Fault(repr(text), None, "is not section.key=value", file="--set", repair=repair))
     key = parse_key(name.strip())
     try:
@@ -188,7 +188,9 @@ def _assigned(below: Any, key: Key, value: Any, above: Key) -> Any:
     if isinstance(below, list):
         if not isinstance(part, int) or part >= len(below):
             allowed = f"0 to {len(below) - 1}" if below else "none: the list is empty"
-            repair = "name one, as in grains[0].radius=…"
+            inner = rest if isinstance(part, int) else key
+            example = dotted((*above, 0, *inner))
+            repair = f"name one, as in {example}=…" if below else "give the whole list"
             place = dotted((*above, part))
             raise InputError(Fault(place, None, "no such entry of a list", "", allowed, repair, "--set"))
         return [*below[:part], _assigned(below[part], rest, value, (*above, part)), *below[part + 1 :]]

@@ -21,6 +21,7 @@ from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.duration.quiet import moment, share
+from porescale.common.schema.scene_file import SCENE_FILE
 from porescale.common.studies.trade_files import FORMAT, FRONT
 
 WARM_UP = 3
@@ -126,7 +127,8 @@ def read_front(scene: Path, end: float | None = None) -> Front:
     """The front beside the scene file for runs until ``end`` (s; None: all remarks apply); InputError where there is
     none, or one that is damaged."""
     file = scene.parent / FRONT
-    repair = f"measure one: study trade {scene.parent}, and put its {FRONT} beside the scene; or name a --quality"
+    named = shlex.quote(str(scene.parent if scene.name == SCENE_FILE else scene))
+    repair = f"measure one: study trade {named}, and put its {FRONT} beside the scene; or name a --quality"
     if not file.is_file():
         raise InputError(Fault(str(file), None, "no front was measured for this scene", repair=repair))
     try:

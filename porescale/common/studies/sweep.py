@@ -76,7 +76,7 @@ def check_points(
         try:
             overrides = (*settings, *point.settings)
             opened = open_scene(scene, program.scene(), quality=point.quality or quality, overrides=overrides)
-            program.report(opened.scene)
+            program.report_of(opened)
         except InputError as error:
             for fault in error.faults:
                 place = f"{point.name}, {fault.file}" if fault.file else point.name

@@ -1,5 +1,6 @@
 """The files of a sweep: sweep.csv, sweep.md and sweep.png, and ensemble.csv of repeats, each whole or not at all."""
 
+import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -15,6 +16,8 @@ from porescale.common.studies.quantities import TIME, Columns, measured
 from porescale.common.studies.runner import FINISHED, Ended
 
 NAME = "sweep"
+PANELS = 12
+"""Columns that a picture shows."""
 COSTS = {"steps": "step", "seconds (s)": "seconds", "core-seconds (s)": "core_seconds", "memory (B)": "peak_bytes"}
 """Columns of what a point cost, and the keys of a run card they come from."""
 Rows = Sequence[Mapping[str, Any]]
@@ -100,8 +103,12 @@ def _short(value: Any) -> str:
 
 
 def picture(ends: Sequence[Ended], rows: Rows, tables: Tables) -> bytes:
-    """The columns that the rows name, over time, a panel each, a curve for each finished point, as a PNG."""
-    columns = list(dict.fromkeys((str(row.get("file", "series")), str(row["column"])) for row in rows))[:12]
+    """The columns that the rows name, over time, a panel each, a curve for each finished point, as a PNG.
+
+    Where they are more than `PANELS` those are shown that differ most, and the title says how many are not.
+    """
+    named = list(dict.fromkeys((str(row.get("file", "series")), str(row["column"])) for row in rows))
+    columns = differing(named, ends, tables)
     across = min(3, max(1, len(columns)))
     down = max(1, -(-len(columns) // across))
     figure = files.new_figure(4.2 * across, 2.9 * down + 0.6)
@@ -111,6 +118,9 @@ def picture(ends: Sequence[Ended], rows: Rows, tables: Tables) -> bytes:
             _curve(axes, ended, file, column, tables, f"C{at % 10}")
         axes.set_title(column, fontsize=9)
         axes.set_xlabel(TIME, fontsize=8)
+    if len(columns) < len(named):
+        words = f"the {len(columns)} of {len(named)} columns that differ most; {NAME}.csv has how all of them end"
+        figure.suptitle(words, fontsize=9)
     for axes in panels[len(columns) :]:
         axes.set_visible(False)
     handles = dict(zip(*reversed(panels[0].get_legend_handles_labels()), strict=True))
@@ -118,6 +128,30 @@ def picture(ends: Sequence[Ended], rows: Rows, tables: Tables) -> bytes:
         names = list(handles)[:20]
         figure.legend([handles[name] for name in names], names, loc="outside lower center", ncols=4, fontsize=7)
     return files.png(figure, 100)
+
+
+def differing(columns: Sequence[tuple[str, str]], ends: Sequence[Ended], tables: Tables) -> list[tuple[str, str]]:
+    """At most `PANELS` of ``columns`` (table, name), in their order: those that differ most from point to point."""
+    if len(columns) <= PANELS:
+        return list(columns)
+    most = sorted(columns, key=lambda it: difference(*it, ends, tables), reverse=True)[:PANELS]
+    return [it for it in columns if it in most]
+
+
+def difference(file: str, column: str, ends: Sequence[Ended], tables: Tables) -> float:
+    """By how much a column's end, least or largest value differs between finished points, over its largest size; 0
+    where fewer than two have it."""
+    found = []
+    for ended in ends:
+        with contextlib.suppress(KeyError, ValueError, IndexError, OSError):
+            values = np.asarray(tables(ended.folder, file)[column], np.float64)
+            values = values[np.isfinite(values)]
+            if ended.outcome == FINISHED and values.size:
+                found.append((values[-1], values.min(), values.max()))
+    if len(found) < 2:
+        return 0.0
+    size = float(np.abs(found).max())
+    return float(np.ptp(found, axis=0).max()) / size if size > 0.0 else 0.0
 
 
 def _curve(axes: Any, ended: Ended, file: str, column: str, tables: Tables, colour: str) -> None:

@@ -65,6 +65,14 @@ def test_a_run_teaches_what_the_next_one_takes(monkeypatch):
     assert told.total == pytest.approx(BEGIN + 3.0 * 2.0 * (sum(NOMINAL.values()) - 50.0), rel=1e-12)
 
 
+def test_a_phase_that_has_nothing_to_do_teaches_nothing():
+    nothing = Work("dam", "water", {**NOMINAL, STEPS: 0.0})
+    remember(nothing, dict.fromkeys((BUILDING, STEPS, RECORDING, FINISHING), 2.0), BEGAN)
+    told = expected(work())
+    assert told.seconds[BUILDING] == pytest.approx(2.0, rel=1e-12)  # 2 of 1 s: the others were learnt
+    assert told.seconds[STEPS] == NOMINAL[STEPS]
+
+
 def test_the_median_of_five_counts_so_that_one_slow_run_has_no_say(monkeypatch):
     for slower in (9.0, 9.0, 2.0, 3.0, 50.0, 2.5, 3.5):
         ran(monkeypatch, slower=slower)

@@ -30,6 +30,7 @@ class Fluid(Section):
     collision: Literal["bgk", "trt"] = "trt"
     gravity: tuple[float, float] = quantity("m/s²", (0.0, -9.81))
     wall: float | None = quantity("m", None, ge=0)
+    stirred: bool = Field(False, description="moves at the start")
 
 
 class Disc(Section):
@@ -190,8 +191,10 @@ def test_a_wrong_shape_is_named(write) -> None:
         "quality.draft = 3: is not a table",
         "fluid = 3: is not a section",
         "grains: is not a list",
-        "size: should be a valid number (allowed: > 0 m)",
+        "size = [1.0] m: should be a valid number (allowed: > 0 m)",
     ]
+    assert found[2].endswith("write [[grains]] and its keys below")
+    assert lines(write(GOOD + "[[grains]]\nkind = 'clump'\nmembers = 3\n"))[0].endswith("write it as [ … ]")
     short = lines(write(GOOD.replace("spacing", "gravity = [1]\nspacing"))).pop()
     assert "fluid.gravity: entry [1] is missing" in short
 
@@ -271,7 +274,12 @@ def test_settings_are_toml_values_else_texts(write) -> None:
         ("=3", "is not section.key=value"),
         ("fluid.spacing=7", "--set: fluid.spacing = 7 m: is out of range"),
         ("grains[7].radius=1", "--set: grains[7]: no such entry of a list (allowed: 0 to 1)"),
-        ("grains.radius=1", "--set: grains.radius: no such entry"),
+        (
+            "grains.radius=1",
+            "--set: grains.radius: no such entry of a list (allowed: 0 to 1); name one, as in grains[0].radius=…",
+        ),
+        ("grains[7].members=1", "name one, as in grains[0].members=…"),
+        ("fluid.stirred=perhaps", "fluid.stirred = 'perhaps': is neither true nor false; give true or false"),
         ("clock.step=9", "--set: clock.step = 9.0 s: is longer than the run"),
     ],
 )

@@ -198,6 +198,28 @@ def test_the_table_holds_what_was_set_what_it_cost_and_what_came_out(tmp_path):
     assert (tmp_path / "out" / "sweep.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_picture_shows_the_columns_that_differ_and_says_how_many_it_leaves_out(tmp_path, monkeypatch):
+    ends = [Ended(Point(name, ()), tmp_path / name, "finished", {}) for name in "ab"]
+    names = [f"c{k} (m)" for k in range(14)]
+    titles = []
+    monkeypatch.setattr("matplotlib.figure.Figure.suptitle", lambda _, text, **how: titles.append(text))
+
+    def tables(folder, file):
+        # the later a column, the more the points differ in it; the last does not, and is large
+        grown = 0.1 if folder.name == "b" else 0.0
+        values = {name: np.array([1.0, 1.0 + grown * k]) for k, name in enumerate(names)}
+        return values | {names[-1]: np.array([1e9, 1e9]), "time (s)": np.array([0.0, 1.0])}
+
+    columns = [("series", name) for name in names]
+    assert sweep_files.differing(columns, ends, tables) == columns[1:-1]
+    assert sweep_files.differing(columns[:12], ends, tables) == columns[:12]
+    rows = [{"name": name, "column": name, "at": "end"} for name in names]
+    sweep_files.picture(ends, rows, tables)
+    assert titles == ["the 12 of 14 columns that differ most; sweep.csv has how all of them end"]
+    sweep_files.picture(ends, rows[:12], tables)
+    assert len(titles) == 1
+
+
 def test_a_number_that_cannot_be_had_is_none(tmp_path):
     card = {"scene": {"decay": {"rate": 1.0, "start": 1.0}}}
     (tmp_path / "card.json").write_text(json.dumps(card))

@@ -117,8 +117,10 @@ def test_a_wrong_plan_is_said_with_its_key(tmp_path, old, new, said):
 def test_no_plan_and_no_front_are_said(tmp_path):
     with pytest.raises(InputError, match="is no file"):
         read_plan(tmp_path / "scene.toml", None)
-    with pytest.raises(InputError, match="no front was measured"):
+    with pytest.raises(InputError, match=f"no front was measured.*study trade {tmp_path}, and"):
         read_front(tmp_path / "scene.toml")
+    with pytest.raises(InputError, match=f"study trade {tmp_path}/other.toml, and"):
+        read_front(tmp_path / "other.toml")
 
 
 def test_the_error_of_a_point_is_its_distance_from_the_reference_of_the_same_repeat(tmp_path):

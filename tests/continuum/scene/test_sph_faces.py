@@ -215,7 +215,8 @@ def test_faces_that_cannot_be_are_refused(changes, said):
 
 
 def test_a_scene_without_faces_builds_none():
-    given = scene([], reservoir=[{"left": 0, "right": 0.1, "bottom": 0, "level": 0.3}])
+    pool = {"left": 0, "right": 0.2, "bottom": 0.4, "level": 0.5}
+    given = scene([], tank={"width": 0.5, "height": 0.6}, reservoir=[pool])
     model = Simulation(given)
     assert model.flow.water.faces == []
     assert not any(isinstance(part, FacePart) for part in model.parts)

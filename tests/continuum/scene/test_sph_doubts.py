@@ -1,0 +1,121 @@
+"""What `check` says of wet ground before it runs: what it costs, what lifts it, exit gradients that come out low."""
+
+import pytest
+
+from continuum_sph.builders.report import report
+from continuum_sph.builders.reports.seepage_report import OPEN_RATE, RATE, bare_exit
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.look import look_of_scene
+from continuum_sph.scene.sections import Scene
+from porescale.common.duration.expected import STEPS
+from porescale.common.schema.sections import scene_as_dict, validate
+
+WIDE = [[0, 0], [1, 0], [1, 0.4], [0, 0.4]]
+SMALL = [[0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]]
+
+
+def scene(outline=WIDE, soil=None, depth=0.6, **changes):
+    """Ground in a tank of 1 m by 0.8 m, with particles of 0.05 m, under water up to a ``depth``, m."""
+    table = {
+        "tank": {"width": 1.0, "height": 0.8, "lid": False},
+        "water": {"sound_speed": 60.0, "column": [{"width": 1.0, "height": depth}] if depth else []},
+        "soil": {"stiffness": 5e5, "permeability": 5e-3, "saturated": True, "body": [{"outline": outline}]}
+        | (soil or {}),
+        "numerics": {"spacing": 0.05},
+        "time": {"end": 0.1},
+        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
+    }
+    return validate(Scene, table | changes)
+
+
+def rows(given):
+    return {row.name: row.value for group in report(given).groups.values() for row in group}
+
+
+POOL = {"left": 0.6, "right": 1.0, "bottom": 0.0, "level": 0.2}
+KINDS = [
+    scene(),
+    scene(depth=0.0, soil={"held": True}, face=[{"side": "floor", "head": 1.0}]),
+    scene(SMALL, {"held": True, "saturated": False}),
+    scene(SMALL, {"saturated": False}, depth=0.2, reservoir=[POOL]),
+    scene(SMALL, {"saturated": False}, depth=0.0, air={"density": 20.0}, reservoir=[POOL]),
+    scene(soil={"held": True}, pile={"x": 0.475, "tip": 0.15}),
+]
+
+
+@pytest.mark.parametrize("given", KINDS, ids=["moving", "full", "pond", "filling", "air", "pile"])
+def test_check_counts_the_particles_and_steps_that_are_built(given):
+    model = Simulation(given)
+    water, there = model.flow.water.layer, rows(given)
+    air = int((water.material[: water.fluid] == 1).sum())
+    assert there["soil particles"] == model.flow.water.skeleton.count
+    assert there["water particles"] + there.get("particles that wait", 0) + air == water.fluid
+    # sound of the deepest water, or of both layers: as it rests; what a face presses in comes later
+    if not given.face:
+        assert there["steps"] == pytest.approx(given.time.end / model.flow.next_step, rel=0.01)
+
+
+def test_the_time_of_a_run_counts_the_open_water_of_a_pond():
+    pond, ground = scene(SMALL, {"held": True}), scene(SMALL, {"held": True}, depth=0.2)
+    for given, soil, fluid in ((pond, 8, 240), (ground, 8, 80)):
+        seconds = report(given).work.seconds[STEPS] / rows(given)["steps"]
+        # the number of steps is rounded in its row
+        assert seconds == pytest.approx(2.0 * soil / RATE + (fluid - soil) / OPEN_RATE, rel=1e-3)
+    assert rows(pond)["memory"] > 1.5 * rows(ground)["memory"]
+
+
+def lifts(given):
+    return [text for text in report(given).warnings if "lifts it" in text]
+
+
+def test_a_face_that_lifts_ground_is_doubted_and_one_that_draws_it_down_or_presses_held_ground_is_not():
+    # 1.59 - 0.6 = 0.99 of 0.4 m over the water at 0.6 m: 0.996 m
+    def floor(head, **soil):
+        return lifts(scene(soil=soil, face=[{"side": "floor", "head": head}]))
+
+    assert "about 1.1, and 0.99 lifts it" in floor(1.05)[0]
+    assert not floor(0.99)
+    assert floor(1.0)
+    assert not floor(0.1)  # as steep, downwards
+    assert not floor(1.05, held=True)
+
+
+def test_flow_between_two_sides_lifts_nothing_and_flow_to_the_lid_does():
+    closed = {"tank": {"width": 0.4, "height": 0.4}, "depth": 0.0}
+    body = {"body": [{"outline": [[0, 0], [0.4, 0], [0.4, 0.4], [0, 0.4]]}]}
+    left = {"side": "left", "head": 1.0}
+    assert not lifts(scene(soil=body, face=[left, {"side": "right", "head": 0.4}], **closed))
+    assert lifts(scene(soil=body, face=[{"side": "floor", "head": 1.0}, {"side": "lid", "head": 0.4}], **closed))
+
+
+def piled(left, right, **changes):
+    """Held ground of 0.4 m with a pile in its middle, water up to ``left`` and ``right``, m, beside it."""
+    columns = [{"width": 0.5, "height": left}, {"left": 0.5, "width": 0.5, "height": right}]
+    water = {"sound_speed": 60.0, "column": columns}
+    return scene(**{"soil": {"held": True}, "water": water, "pile": {"x": 0.475, "tip": 0.15}} | changes)
+
+
+def test_an_exit_through_bare_ground_beside_a_pile_is_doubted():
+    def said(given):
+        return [text for text in report(given).warnings if "exit gradient () is too low" in text]
+
+    assert "on the right of the pile" in said(piled(0.6, 0.4))[0]
+    assert "by 20 % with 10 rows" in said(piled(0.6, 0.4))[0]
+    assert bare_exit(piled(0.4, 0.6)) == "left"
+    for covered in (piled(0.7, 0.5), piled(0.4, 0.4)):
+        assert not said(covered)
+    rising = {"left": 0.6, "right": 1.0, "bottom": 0.4, "level": 0.5}
+    assert not said(piled(0.6, 0.4, reservoir=[rising]))
+    full = {"tank": {"width": 1.0, "height": 0.4}, "depth": 0.0, "water": {"sound_speed": 60.0}}
+    faces = [{"side": "lid", "end": 0.45, "head": 0.6}, {"side": "lid", "start": 0.5, "head": 0.4}]
+    assert not said(piled(0.0, 0.0, face=faces, **full))
+
+
+def test_the_sheet_is_drawn_in_the_column_that_stands_for_it():
+    (x, low), (same, high) = look_of_scene(scene_as_dict(piled(0.6, 0.5, pile={"x": 0.45, "tip": 0.15})), "").lines[-1]
+    assert x == same == pytest.approx(0.475, rel=1e-12)
+    assert (low, high) == (0.15, 0.8)
+
+
+def test_check_says_where_the_sheet_stands():
+    assert rows(piled(0.6, 0.5, pile={"x": 0.45, "tip": 0.15}))["stands at"] == pytest.approx(0.475, rel=1e-12)

@@ -1,0 +1,131 @@
+"""What a scene of soil and water is refused for: ground that holds nothing, strips that keep no level, names given
+twice."""
+
+import pytest
+
+from continuum_sph.builders.report import report
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.scene.sections import Scene
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
+
+BLOCK = [[0.3, 0], [0.6, 0], [0.6, 0.4], [0.3, 0.4]]
+FLAT = [[0.7, 0], [0.9, 0], [0.9, 0.02], [0.7, 0.02]]  # lower than the middle of the lowest row
+WATER = {"sound_speed": 30.0, "column": [{"width": 0.3, "height": 0.3}]}
+SUCTION = {"alpha": 4.0, "n": 3.0, "saturation": 0.5}
+
+
+def scene(*outlines, soil=None, **changes):
+    """A block of soil in a tank of 1 m by 0.5 m, with particles of 0.05 m; water where ``changes`` have some."""
+    table = {
+        "tank": {"width": 1.0, "height": 0.5, "lid": False},
+        "soil": {"body": [{"outline": it} for it in outlines or (BLOCK,)]} | (soil or {}),
+        "numerics": {"spacing": 0.05},
+        "time": {"end": 0.1},
+        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
+    }
+    return validate(Scene, table | changes)
+
+
+DRY, MOVING, HELD = {}, {"water": WATER}, {"water": WATER, "soil": {"held": True}}
+MOIST = {"water": {"sound_speed": 30.0}, "soil": {"suction": SUCTION}}
+
+
+@pytest.mark.parametrize("kind", [DRY, MOVING, HELD, MOIST], ids=["dry", "moving", "held", "moist"])
+@pytest.mark.parametrize(("outlines", "number"), [((FLAT,), 0), ((BLOCK, FLAT), 1)])
+def test_a_body_without_a_particle_is_refused_by_check_and_run(kind, outlines, number):
+    for act in (report, Simulation):
+        with pytest.raises(InputError, match=rf"soil\.body\[{number}\]\.outline .* holds no particle of soil"):
+            act(scene(*outlines, **kind))
+    report(scene(**kind))  # the check that fails: a body with particles passes
+
+
+def test_every_empty_body_is_named_and_one_within_the_column_of_a_pile_is_empty():
+    with pytest.raises(InputError) as caught:
+        report(scene(FLAT, BLOCK, FLAT))
+    assert [fault.key for fault in caught.value.faults] == ["soil.body[0].outline", "soil.body[2].outline"]
+    beside = [[0.45, 0.1], [0.5, 0.1], [0.5, 0.4], [0.45, 0.4]]
+    low = [[0, 0], [1, 0], [1, 0.1], [0, 0.1]]
+    report(scene(low, beside))
+    with pytest.raises(InputError, match=r"soil\.body\[1\]\.outline"):
+        report(scene(low, beside, pile={"x": 0.475, "tip": 0.05}))
+
+
+POOL = {"name": "river", "left": 0.0, "right": 0.15, "level": 0.2}
+DRAIN = {"left": 0.75, "right": 1.0, "level": 0.0}
+
+
+def kept(*reservoirs, **changes):
+    """A scene of a held block with reservoirs."""
+    return scene(reservoir=list(reservoirs), **HELD | changes)
+
+
+def test_a_strip_on_another_or_on_ground_is_refused_and_one_beside_them_is_not():
+    kept(POOL, DRAIN)
+    kept(POOL, DRAIN | {"left": 0.15, "right": 0.3})
+    kept(POOL | {"bottom": 0.4, "left": 0.3, "right": 0.6, "level": 0.45})  # open water on the ground
+    with pytest.raises(InputError, match=r"reservoir\[1\]: overlaps reservoir\[0\] by 0\.05 m"):
+        kept(POOL, DRAIN | {"left": 0.1, "right": 0.3})
+    with pytest.raises(InputError, match=r"reservoir\[0\]\.bottom = 0\.0 m: has ground in its strip, up to 0\.4 m"):
+        kept(POOL | {"right": 0.35})
+    # with suction no particles of water stand there
+    scene(reservoir=[POOL | {"right": 0.4}], **MOIST)
+
+
+def test_a_strip_that_is_narrow_or_beside_the_ground_is_doubted_and_one_of_two_spacings_is_whole():
+    def said(strip):
+        warnings = report(kept(strip)).warnings
+        return [any(word in text for text in warnings) for word in ("spacings broad, at least 6", "closer than 3")]
+
+    wide = {"numerics": {"spacing": 0.025}}
+    assert said(POOL) == [True, False]
+    assert said(POOL | {"right": 0.2}) == [True, True]
+    assert not any("strip" in text for text in report(kept(POOL | {"right": 0.225}, **wide)).warnings)
+    report(kept(DRAIN | {"left": 0.7, "right": 0.8}))  # 0.8 - 0.7 is less than 0.1 by round-off
+    with pytest.raises(InputError, match="fewer than 2 particles"):
+        kept(DRAIN | {"left": 0.7, "right": 0.79})
+
+
+@pytest.mark.parametrize(
+    ("key", "sections", "said"),
+    [
+        ("reservoir", [POOL, DRAIN | {"name": "river"}], r"reservoir\[1\]\.name = 'river': is that of another reser"),
+        ("reservoir", [POOL | {"name": "reservoir 1"}, DRAIN], r"reservoir\[1\]\.name = 'reservoir 1'"),
+        ("probe", [{"name": "a", "x": 0.1, "y": 0.1}] * 2, r"probe\[1\]\.name = 'a': is that of another probe"),
+        ("probe", [{"name": "a\nb", "x": 0.1, "y": 0.1}], r"probe\[0\]\.name = 'a\\nb': has control characters"),
+        ("level", [{"name": "a", "x": 0.1}] * 2, r"level\[1\]\.name = 'a': is that of another level"),
+        ("level", [{"name": " ", "x": 0.1}], r"level\[0\]\.name = ' ': is blank"),
+    ],
+)
+def test_names_that_would_lose_columns_are_refused(key, sections, said):
+    with pytest.raises(InputError, match=said):
+        scene(**HELD, **{key: sections})
+    scene(**HELD, **{key: [it | {"name": f"n, é {k}"} for k, it in enumerate(sections)]})
+
+
+def test_a_rise_takes_units_and_no_time_before_the_start():
+    made = kept(POOL | {"level": None, "rise": [["0 s", "10 cm"], ["500 ms", 0.2]]})
+    assert made.reservoir[0].table == ((0.0, 0.1), (0.5, 0.2))
+    for rise, said in (
+        ([[-1, 0.1], [1, 0.2]], r"rise\[0\]\[0\] = -1 s: is out of range \(allowed: >= 0 s\)"),
+        ([["1 m", 0.1]], r"rise\[0\]\[0\] = '1 m'.* does not measure the same thing as s"),
+        ([[0, 0.7]], r"reservoir\[0\]\.rise = 0\.7 m: .* over the tank"),
+    ):
+        with pytest.raises(InputError, match=said):
+            kept(POOL | {"level": None, "rise": rise})
+
+
+def test_a_water_table_over_the_tank_is_refused():
+    kept(POOL, soil={"held": True, "water_table": 0.5})
+    with pytest.raises(InputError, match=r"soil\.water_table = 5\.0 m: lies over the tank \(allowed: <= 0\.5 m\)"):
+        kept(POOL, soil={"held": True, "water_table": 5})
+
+
+def test_a_spacing_too_large_for_a_side_is_what_is_wrong_with_its_face():
+    full = {"water": {"sound_speed": 60.0}, "tank": {"width": 1.0, "height": 0.5}}
+    full |= {"soil": {"held": True, "saturated": True, "body": [{"outline": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]}]}}
+    face = {"side": "left", "head": 1.0}
+    with pytest.raises(InputError, match=r"numerics\.spacing = 0\.5 m: leaves face\[0\] .* \(allowed: <= 0\.25 m\)"):
+        scene(**full, face=[face], numerics={"spacing": 0.5})
+    with pytest.raises(InputError, match=r"face\[0\]\.start = 0\.3 m"):  # the side has two rows, the face has not
+        scene(**full, face=[face | {"start": 0.3}], numerics={"spacing": 0.25})
