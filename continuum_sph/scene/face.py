@@ -7,10 +7,10 @@ import numpy as np
 import pydantic
 
 from continuum_sph.scene.bounds import WHOLE
-from continuum_sph.scene.names import name_faults, names_of
 from continuum_sph.scene.soil import SoilSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
+from porescale.common.schema.names import name_faults, names_of
 from porescale.common.schema.sections import Section, quantity
 
 Size = tuple[float, float]

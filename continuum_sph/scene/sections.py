@@ -12,7 +12,6 @@ from continuum_sph.scene.face import FaceSection, face_faults
 from continuum_sph.scene.inclusion import InclusionSection
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.scene.material_file import with_material
-from continuum_sph.scene.names import name_faults
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.output import OutputSection, TimeSection
 from continuum_sph.scene.pile import SheetPileSection
@@ -23,6 +22,7 @@ from continuum_sph.scene.water import Column, WaterSection
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault
 from porescale.common.schema.look import LookSection
+from porescale.common.schema.names import name_faults
 from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.sections import Refused, load, quantity
 

@@ -8,10 +8,10 @@ import pydantic
 from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import Origin
-from continuum_sph.scene.names import name_faults
 from continuum_sph.scene.suction import SuctionSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
+from porescale.common.schema.names import name_faults
 from porescale.common.schema.sections import Section, quantity
 
 

@@ -361,3 +361,16 @@ def test_snapshots_that_no_disk_holds_are_refused_and_many_are_warned_of():
             said(1e-12, 1e6, key)
     (doubt,) = [it for it in said(1e-12, 10.0).warnings if "snapshot_interval" in it]
     assert "snapshots, about" in doubt
+
+
+@pytest.mark.parametrize("section", ["probe", "flux", "line", "region"])
+def test_two_measurements_of_one_name_are_refused_and_two_without_one_are_not(section):
+    place = {
+        "probe": {"x": 0.004, "y": 0.003}, "region": {"lower": [0.001, 0.001], "upper": [0.004, 0.003]},
+    }.get(section, {"start": [0.001, 0.001], "end": [0.004, 0.003]})  # fmt: skip
+    derive(column(**{section: [place, place]}))
+    twice = [place | {"name": "one"}, place | {"name": "one"}]
+    (line,) = lines(**{section: twice})
+    assert line.startswith(f"{section}[1].name = 'one': is that of another ")
+    (line,) = lines(**{section: [place | {"name": "one\ntwo"}]})
+    assert "has control characters" in line

@@ -16,7 +16,6 @@ from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.face import face_names
-from continuum_sph.scene.names import names_of
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
@@ -24,6 +23,7 @@ from continuum_sph.water.smoothing import RATIO
 from porescale.common.api.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
+from porescale.common.schema.names import names_of
 
 RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
 OPEN_RATE = 1.9e6  # the same of water in the open: 3 200 particles of a pond over 64 of held soil

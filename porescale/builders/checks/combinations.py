@@ -4,6 +4,7 @@ from porescale.builders.checks.polygons_in_fluid import check_in_fluid
 from porescale.builders.initial.contact_laws import law_class
 from porescale.builders.initial.walls import moving_sides, wall_names
 from porescale.common.core.errors import Fault
+from porescale.common.schema.names import name_faults
 from porescale.scene.domain import SIDES
 from porescale.scene.scene import Scene
 
@@ -106,6 +107,16 @@ def check_walls(scene: Scene) -> list[Fault]:
         if name in SIDES or name in names[:k]
     ]
     return faults
+
+
+def check_names(scene: Scene) -> list[Fault]:
+    """What is wrong with names of measurements, from which columns have theirs."""
+    return [
+        *name_faults("probe", scene.probe, "probe"),
+        *name_faults("line", scene.line, "line"),
+        *name_faults("flux", scene.flux, "section"),
+        *name_faults("region", scene.region, "region"),
+    ]
 
 
 def check_frame_sections(scene: Scene) -> list[Fault]:

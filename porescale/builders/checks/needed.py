@@ -4,6 +4,7 @@ from porescale.builders.checks.combinations import (
     check_bonds,
     check_cell,
     check_frame_sections,
+    check_names,
     check_rock,
     check_sleep,
     check_walls,
@@ -59,6 +60,7 @@ def check_needed(scene: Scene) -> list[Fault]:
     if scene.grains and scene.contact:
         faults += check_contact(scene)
     faults += [
+        *check_names(scene),
         *check_walls(scene),
         *check_cell(scene),
         *check_frame_sections(scene),

@@ -11,6 +11,7 @@ from porescale.builders.stepper import Fields, Row
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
 from porescale.common.record.part import Part
+from porescale.common.schema.names import names_of
 from porescale.coupling.step import Coupled
 from porescale.output.rectangle_mean import RectangleMean
 from porescale.output.sample import Sampler, midpoints
@@ -27,7 +28,7 @@ class FlowInstruments(Part):
         assert derived.cells
         self.clock, self.fluid, self.gravity = system.clock, fluid, scene.gravity
         grid = derived.cells, fluid.scales.spacing, scene.domain.periodic
-        names = [it.name or f"probe {k}" for k, it in enumerate(scene.probe)]
+        names = names_of(scene.probe, "probe")
         points = [(name, it) for name, it in zip(names, scene.probe, strict=True) if it.corners is None]
         self.probes = Sampler([(it.x, it.y) for _, it in points], *grid) if points else None
         self.probe_names = [name for name, _ in points]
@@ -35,7 +36,10 @@ class FlowInstruments(Part):
             name: RectangleMean(*it.corners, *grid[:2])
             for name, it in zip(names, scene.probe, strict=True) if it.corners
         }  # fmt: skip
-        self.fluxes = [_Section(it, k, fluid.scales.spacing, grid) for k, it in enumerate(scene.flux)]
+        sections = names_of(scene.flux, "section")
+        self.fluxes = [
+            _Section(name, it, fluid.scales.spacing, grid) for name, it in zip(sections, scene.flux, strict=True)
+        ]
         self.coupled = system.coupled
         self.loads = Loading(scene.loads, system.coupled, system.held) if scene.loads and system.coupled else None
         self.first = ratio_column(scene.grains)
@@ -114,8 +118,8 @@ class FlowInstruments(Part):
 class _Section:
     """Integral of what crosses a straight section: the midpoint rule, a point a cell, exact for whole cells."""
 
-    def __init__(self, section: Flux, number: int, spacing: float, grid: Any) -> None:
-        self.name = section.name or f"section {number}"
+    def __init__(self, name: str, section: Flux, spacing: float, grid: Any) -> None:
+        self.name = name
         (x0, y0), (x1, y1) = section.start, section.end
         self.length = math.hypot(x1 - x0, y1 - y0)
         self.normal = (y1 - y0) / self.length, (x0 - x1) / self.length

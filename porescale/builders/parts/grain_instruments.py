@@ -18,6 +18,7 @@ from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.common.record.part import Part
+from porescale.common.schema.names import names_of
 from porescale.dem.bodies.rigid import areas, as_bodies, body_of
 from porescale.dem.forces.rectangle import BOTTOM, RIGHT, TOP
 from porescale.dem.forces.rectangle import LEFT as LEFT_FACE
@@ -54,7 +55,8 @@ class GrainInstruments(Part):
         self.clock, self.grains, self.placed = system.clock, grains, placed
         self.walls = WallPlaces(scene.domain, scene.wall) if scene.output.forces else None
         self.contacts, self.coarse_graining = scene.output.contacts, scene.coarse_graining
-        self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
+        named = zip(names_of(scene.region, "region"), scene.region, strict=True)
+        self.regions = [(name, Region(it.lower, it.upper)) for name, it in named]
         self.held = np.arange(grains.discs.count) >= grains.discs.count - system.held
         if grains.segments is not None:
             self.held = ~np.isin(np.arange(grains.discs.count), free_rows(grains, placed, system.held))
