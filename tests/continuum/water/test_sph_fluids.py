@@ -10,6 +10,7 @@ from continuum_sph.program import scene_type
 from continuum_sph.validation.water import fluids as trials_fluids
 from continuum_sph.validation.water.fluids import TENSION
 from continuum_sph.water.energy_budget import budget
+from continuum_sph.water.smoothing import RATIO
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 
@@ -156,5 +157,5 @@ def test_the_step_that_capillary_waves_allow_is_reported_and_used():
     rows = {row.name: row.value for group in report(thick).groups.values() for row in group}
     assert rows["limited by"] == "capillarity"
     model = Simulation(thick)
-    h = 1.3 * 0.05
+    h = RATIO * 0.05
     assert model.step_seconds == pytest.approx(0.25 * (1000.0 * h**3 / (2.0 * np.pi * 1e6)) ** 0.5)
