@@ -118,9 +118,9 @@ def _fault(
             return Fault(name, shown, "is out of range", unit, f"{sign} {context[bound]}", repair)
     problem = str(item["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
     problem = problem[:1].lower() + problem[1:]
-    shown = value if shown is None and isinstance(value, list | dict) else shown
+    given = value if isinstance(value, list | dict) else shown
     return Fault(
-        name, shown, problem.replace("input should be", "should be"), unit, allowed, f"give the {help}" if help else ""
+        name, given, problem.replace("input should be", "should be"), unit, allowed, f"give the {help}" if help else ""
     )
 
 

@@ -134,7 +134,7 @@ def differing(columns: Sequence[tuple[str, str]], ends: Sequence[Ended], tables:
     """At most `PANELS` of ``columns`` (table, name), in their order: those that differ most from point to point."""
     if len(columns) <= PANELS:
         return list(columns)
-    most = sorted(columns, key=lambda it: difference(*it, ends, tables), reverse=True)[:PANELS]
+    most = sorted(columns, key=lambda it: difference(it[0], it[1], ends, tables), reverse=True)[:PANELS]
     return [it for it in columns if it in most]
 
 

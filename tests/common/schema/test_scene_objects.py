@@ -121,7 +121,7 @@ def test_a_changed_copy_has_the_messages_of_settings(tmp_path: Path) -> None:
         asked = lines(lambda key=key, value=value: load(file, Scene, overrides=[setting_text(key, value)]))
         told = lines(lambda key=key, value=value: scene.with_({key: value}))
         assert told == [line.removeprefix("--set: ") for line in asked]
-    assert lines(lambda: scene.with_({"no key": 1})) == ["'no key': is not section.key; write it as \"fluid.spacing\""]
+    assert lines(lambda: scene.with_({"no key": 1})) == ["'no key': is not section.key; write it as \"time.end\""]
     assert len(lines(lambda: scene.with_({"fluid.spacing": 3, "probe[0].x": -1, "titel": "a"}))) == 3
 
 

@@ -1,8 +1,9 @@
-"""What the report of a scene refuses names the scene's file, or --set where that gave the key."""
+"""What commands say names the file, the key and the folder of the one who reads it: faults of a report, `new`."""
 
 import pytest
 
 from continuum_sph.cli import PACKAGE
+from porescale.common.cli import new
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import open_scene
 from porescale.common.studies.parameter_table import Point
@@ -37,3 +38,11 @@ def test_a_fault_that_a_report_finds_names_where_the_key_stands(tmp_path, settin
     with pytest.raises(InputError, match=rf"a, .*{place}water\.sound_speed"):
         check_points(PACKAGE, file, [Point("a", settings)], None, ())
     PACKAGE.report_of(open_scene(file, PACKAGE.scene(), overrides=["water.sound_speed=30"]))
+
+
+def test_new_names_its_own_commands_with_the_folder_as_a_shell_takes_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    new.command(PACKAGE)("name with space")
+    assert "next: continuum-sph check 'name with space'; continuum-sph run 'name with space'" in capsys.readouterr().out
+    with pytest.raises(InputError, match=r"is no case; .*`continuum-sph cases` lists all"):
+        new.command(PACKAGE)("other", from_="no such case")
