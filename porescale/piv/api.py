@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from porescale.common.core.errors import Fault, InputError, PorescaleWarning
+from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.types import AnyArray
 from porescale.common.core.units import to_si
 
@@ -103,7 +102,7 @@ def measure(
 
         written = write_fields(work, kept(), None if out is None else Path(out), overlay=overlay, review=review)
         for doubt in written["doubts"]:
-            warnings.warn(_words(doubt), PorescaleWarning, stacklevel=2)
+            _warn(doubt)
     except InputError as error:
         raise _in_python(error) from None
     return fields[0] if work.total == 1 else fields
@@ -197,7 +196,8 @@ def _si(key: str, value: float | str | None, unit: str) -> float | None:
 
 
 def _warn(text: str) -> None:
-    warnings.warn(text, PorescaleWarning, stacklevel=6)
+    """A doubt of a command as a warning in Python: at the caller's line, under the names of arguments."""
+    warn(_words(text))
 
 
 def _in_python(error: InputError) -> InputError:

@@ -12,9 +12,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.given_file import given_bytes, require_finite
 from porescale.piv.images import stacks
+from porescale.piv.images.numbered import doubt_of_order, natural
 
 Picture = NDArray[Any]
 Box = tuple[int, int, int, int]
@@ -98,10 +99,21 @@ class Film:
 
 
 def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
-    """A film from one film file or stack, a folder, a pattern (img_*.png), or pictures in the order given.
+    """A film from one film file or stack, a folder or pattern (img_*.png) by the numbers in its names (img2 before
+    img10), or pictures in the order given.
 
-    chosen : start, end, step, region of :class:`Film`.  InputError where there is nothing to read.
+    chosen : start, end, step, region of :class:`Film`.  InputError where there is nothing to read; PorescaleWarning
+    where numbers in the chosen names jump, or names that were given are in the order of their text.
     """
+    film = opened(names, **chosen)
+    doubt = doubt_of_order(film.files[film.start : film.end]) if not film.moving else ""
+    if doubt:
+        warn(doubt)
+    return film
+
+
+def opened(names: Sequence[str | Path], **chosen: Any) -> Film:
+    """A film as ``open_film`` gives it, without its warnings."""
     bounds = (("start", 0), ("step", 1), ("end", 1))
     faults = [
         Fault(f"--{key}", chosen[key], "is out of range", allowed=f">= {least}")
@@ -113,9 +125,9 @@ def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
     if len(names) == 1:
         path = Path(names[0])
         if path.is_dir():
-            files = sorted(it for it in path.iterdir() if it.suffix.lower() in STILLS)
+            files = sorted((it for it in path.iterdir() if it.suffix.lower() in STILLS), key=natural)
         elif not path.exists() and any(letter in str(path) for letter in "*?["):
-            files = [Path(it) for it in sorted(glob.glob(str(path)))]
+            files = sorted(map(Path, glob.glob(str(path))), key=natural)
         elif stacks.is_stack(path):
             return Film((path,), **chosen)
         elif path.suffix.lower() in STILLS and path.is_file():

@@ -10,7 +10,7 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Flags
-from porescale.piv.images.film import Film, Picture, open_film, picture
+from porescale.piv.images.film import Film, Picture, opened, picture
 from porescale.piv.images.stacks import is_stack
 
 SEGMENTS = ("bright", "dark")
@@ -97,7 +97,7 @@ def _sources(source: str | Flags | None, film: Film) -> Iterator[Flags | None]:
         repair = "name a bitmap, a film, a folder or pattern of bitmaps; or bright or dark, to segment"
         raise InputError(Fault("--mask", source, "is no file", repair=repair))
     try:
-        several = open_film([source], start=film.start, end=film.end, step=film.step, region=film.region)
+        several = opened([source], start=film.start, end=film.end, step=film.step, region=film.region)
     except InputError as error:
         raise InputError([replace(it, key="--mask" if it.key == "film" else it.key) for it in error.faults]) from None
     count = 0
