@@ -70,12 +70,35 @@ class Film:
                 shapes = " and ".join(f"{it[1]} x {it[0]}" for it in (size, frame.shape))
                 raise InputError(Fault("frame", number, f"pictures are not of one size: {shapes}"))
             size = frame.shape
-            yield frame if self.region is None else _cut(frame, self.region)
+            yield self.cut(frame)
+
+    def cut(self, whole: Picture) -> Picture:
+        """The part of a frame, or of its mask, (rows, columns), that is in the region; InputError if it leaves it."""
+        if self.region is None:
+            return whole
+        left, top, right, bottom = self.region
+        rows, columns = whole.shape
+        if not (0 <= left < right <= columns and 0 <= top < bottom <= rows):
+            given = ",".join(map(str, self.region))
+            raise InputError(Fault("--region", given, "leaves the picture", "px", f"within 0,0,{columns},{rows}"))
+        return whole[top:bottom, left:right]
 
     def count(self) -> int:
         """Number of chosen frames; a film whose file does not hold it is decoded."""
-        known = len(self.files) if not self.moving else self._pages or _stated(self.files[0])
-        return len(range(known)[self.start : self.end : self.step]) if known else sum(1 for _ in self._chosen())
+        known = self.certain()
+        if known is None and (stated := _stated(self.files[0])):
+            known = len(range(stated)[self._choice])
+        return sum(1 for _ in self._chosen()) if known is None else known
+
+    def certain(self) -> int | None:
+        """Number of chosen frames of pictures and stacks; None of a film, whose file may state another than it has."""
+        known = self._pages if self.moving else len(self.files)
+        return len(range(known)[self._choice]) if known else None
+
+    @property
+    def _choice(self) -> slice:
+        """The chosen ones of all frames."""
+        return slice(self.start, self.end, self.step)
 
     @property
     def _pages(self) -> int:
@@ -85,11 +108,11 @@ class Film:
     def _chosen(self) -> Iterator[tuple[int, Picture]]:
         """The chosen frames: number and whole picture."""
         if not self.moving:
-            for number in range(len(self.files))[self.start : self.end : self.step]:
+            for number in range(len(self.files))[self._choice]:
                 yield number, picture(self.files[number])
             return
         if total := self._pages:
-            yield from stacks.pages(self.files[0], range(total)[self.start : self.end : self.step])
+            yield from stacks.pages(self.files[0], range(total)[self._choice])
             return
         for number, frame in enumerate(_decoded(self.files[0])):
             if self.end is not None and number >= self.end:
@@ -151,13 +174,13 @@ class Held(Film):
 
     pictures: tuple[Picture, ...] = ()
 
-    def count(self) -> int:
+    def certain(self) -> int:
         """Number of chosen frames."""
-        return len(range(len(self.pictures))[self.start : self.end : self.step])
+        return len(range(len(self.pictures))[self._choice])
 
     def _chosen(self) -> Iterator[tuple[int, Picture]]:
         """The chosen frames: number and whole picture."""
-        for number in range(len(self.pictures))[self.start : self.end : self.step]:
+        for number in range(len(self.pictures))[self._choice]:
             yield number, self.pictures[number]
 
 
@@ -178,16 +201,6 @@ def background(film: Film, kind: str) -> NDArray[np.float32] | None:
     if total is None:
         raise InputError(Fault("film", None, "no frames chosen"))
     return total / np.float32(count) if kind == "mean" else total
-
-
-def _cut(frame: Picture, region: Box) -> Picture:
-    """The region of a frame."""
-    left, top, right, bottom = region
-    rows, columns = frame.shape
-    if not (0 <= left < right <= columns and 0 <= top < bottom <= rows):
-        given = ",".join(map(str, region))
-        raise InputError(Fault("--region", given, "leaves the picture", "px", f"within 0,0,{columns},{rows}"))
-    return frame[top:bottom, left:right]
 
 
 def _unreadable(path: Path, error: Exception) -> InputError:
