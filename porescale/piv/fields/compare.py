@@ -9,6 +9,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
+from porescale.piv import given
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.surface import Difference, Surface, difference, of_field
 from porescale.piv.fields.vortices import ALIKE, Vortex, matched, vortices
@@ -87,6 +88,12 @@ def compare(
     match;  surfaces : of the piles; what a field has solid stands for one that is None.  InputError where the fields
     share no fluid, or one is in pixels and the other in metres.
     """
+    repair = "give fields of piv.measure, or of field_of_run"
+    for key, field in (("reference", reference), ("other", other)):
+        if not isinstance(field, Field):
+            raise InputError(Fault(key, str(field), f"is no field but {type(field).__name__}", repair=repair))
+    near = [] if within is None else given.number("within", within, 0, ends="(]")
+    given.refuse(near, given.number("factor", factor, 1, ends="(]"))
     if reference.upwards != other.upwards:
         repair = "give both a scale, or none"
         raise InputError(Fault("fields", None, "one has y up (metres), the other y down (pixels)", repair=repair))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.given_file import given_bytes, require_finite
+from porescale.piv import given
 from porescale.piv.images import stacks
 from porescale.piv.images.numbered import doubt_of_order, natural
 
@@ -21,6 +22,8 @@ Picture = NDArray[Any]
 Box = tuple[int, int, int, int]
 
 STILLS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm", ".webp")
+LEAST = {"start": 0, "step": 1, "end": 1}
+"""Least numbers of frames that choose among those of a film."""
 
 
 def picture(path: Path) -> Picture:
@@ -79,8 +82,8 @@ class Film:
         left, top, right, bottom = self.region
         rows, columns = whole.shape
         if not (0 <= left < right <= columns and 0 <= top < bottom <= rows):
-            given = ",".join(map(str, self.region))
-            raise InputError(Fault("--region", given, "leaves the picture", "px", f"within 0,0,{columns},{rows}"))
+            text = ",".join(map(str, self.region))
+            raise InputError(Fault("--region", text, "leaves the picture", "px", f"within 0,0,{columns},{rows}"))
         return whole[top:bottom, left:right]
 
     def count(self) -> int:
@@ -137,14 +140,10 @@ def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
 
 def opened(names: Sequence[str | Path], **chosen: Any) -> Film:
     """A film as ``open_film`` gives it, without its warnings."""
-    bounds = (("start", 0), ("step", 1), ("end", 1))
-    faults = [
-        Fault(f"--{key}", chosen[key], "is out of range", allowed=f">= {least}")
-        for key, least in bounds
-        if chosen.get(key) is not None and chosen[key] < least
-    ]
-    if faults:
-        raise InputError(faults)
+    given.refuse(
+        *(given.whole(f"--{key}", chosen[key], least) for key, least in LEAST.items() if chosen.get(key) is not None),
+        given.region("--region", chosen.get("region")),
+    )
     if len(names) == 1:
         path = Path(names[0])
         if path.is_dir():
