@@ -167,6 +167,7 @@ def quantity(key: str, text: str, unit: str) -> float:
             value = to_si(text, unit)
         except ValueError as error:
             raise InputError(Fault(key, text, str(error), unit)) from error
-    if value < 0 or (value == 0 and key not in ("--time", "--start", "--end")):
-        raise InputError(Fault(key, text, "is out of range", unit, "> 0"))
+    least = ">= 0" if key in ("--time", "--start", "--end") else "> 0"
+    if value < 0 or (value == 0 and least == "> 0"):
+        raise InputError(Fault(key, text, "is out of range", unit, least))
     return value

@@ -153,6 +153,8 @@ def opened(names: Sequence[str | Path], **chosen: Any) -> Film:
         elif stacks.is_stack(path):
             return Film((path,), **chosen)
         elif path.suffix.lower() in STILLS and path.is_file():
+            if path.suffix.lower() in stacks.SUFFIXES:
+                stacks.count(path)  # a torn stack: says that it cannot be read
             raise InputError(Fault("film", str(path), "is a single picture", repair="give two, or a film"))
         else:
             return Film((path,), rate=_rate(path), **chosen)
