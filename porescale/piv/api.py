@@ -66,7 +66,8 @@ def measure(
 
     Two pictures, or all averaged, give a `Field`; a film of more gives a list of them, in time.  Pairs in a film that
     show nothing give a PorescaleWarning and no valid vector; fewer than 70 % valid vectors give some too, with what to
-    try.  Raises InputError for what cannot be read or measured.
+    try; so do pictures whose errors are known to be larger than the stated uncertainty (narrow particle images, noise).
+    Raises InputError for what cannot be read or measured.
     """
     from porescale.piv.estimate.measure import Settings
     from porescale.piv.estimate.series import Shots
