@@ -143,6 +143,10 @@ def compare(
     at: Annotated[str | None, Parameter(name="--time", help='of a run: the snapshot nearest to it; "0.5 s"')] = None,
     within: Annotated[float | None, Parameter(help="largest distance of vortices that match, px or m")] = None,
     factor: Annotated[float, Parameter(help="most between circulations of vortices that match")] = 2.0,
+    error: Annotated[
+        float | None,
+        Parameter(help="of a component, px or m/s, in fields that state none; without it they have no vortices"),
+    ] = None,
     json: Json = False,
 ) -> int:
     """Compare two fields: differences over the reference's rms speed, directions, vortices by place, sign and
@@ -150,6 +154,7 @@ def compare(
     """
     from porescale.common.core.atomic import write_text
     from porescale.common.evidence.files import finite
+    from porescale.piv import given
     from porescale.piv.fields.compare import ALIGNED
     from porescale.piv.fields.compare import compare as compare_fields
     from porescale.piv.fields.of_run import surface_of_run
@@ -158,12 +163,11 @@ def compare(
     if out is not None:
         require_writable(out, "--out")
     moment = None if at is None else quantity("--time", at, "s")
-    if factor <= 1 or (within is not None and within <= 0):
-        bad = ("--factor", factor, "> 1") if factor <= 1 else ("--within", within, "> 0")
-        raise InputError(Fault(bad[0], bad[1], "is out of range", allowed=bad[2]))
+    bounds = (("--factor", factor, 1.0), ("--within", within, 0.0), ("--error", error, 0.0))
+    given.refuse(*(given.number(key, it, least, ends="(]") for key, it, least in bounds if it is not None))
     first, second = _field(reference, moment), _field(other, moment)
     one, two = (surface_of_run(path, first.x, moment) if path.is_dir() else None for path in (reference, other))
-    found = compare_fields(first, second, within, factor, (one, two))
+    found = compare_fields(first, second, within, factor, (one, two), error)
     text = json_text.dumps(finite(found.as_dict()), indent=1, allow_nan=False)
     if out is not None:
         write_text(out / "compare.json", text + "\n")

@@ -27,7 +27,7 @@ def measure(
     out: Annotated[Path | None, Parameter(help="folder for fields and pictures")] = None,
     csv: Annotated[Path | None, Parameter(help="table of the field (of the first pair, or the average)")] = None,
     openpiv: Annotated[Path | None, Parameter(help="the same in OpenPIV's text format")] = None,
-    window: Annotated[int, Parameter(help="of the last pass, px: 64, 32, 16 or 8")] = 16,
+    window: Annotated[int, Parameter(help="of the last pass, px: even, 4 to the smaller side of the pictures")] = 16,
     overlap: Annotated[float, Parameter(help="of neighbouring windows")] = 0.5,
     search: Annotated[int, Parameter(help="largest displacement looked for, px")] = 16,
     smooth: Annotated[bool, Parameter(help="no more than the noise asks for", negative="--no-smooth")] = True,
@@ -167,6 +167,7 @@ def quantity(key: str, text: str, unit: str) -> float:
             value = to_si(text, unit)
         except ValueError as error:
             raise InputError(Fault(key, text, str(error), unit)) from error
-    if value < 0 or (value == 0 and key not in ("--time", "--start", "--end")):
-        raise InputError(Fault(key, text, "is out of range", unit, "> 0"))
+    least = ">= 0" if key in ("--time", "--start", "--end") else "> 0"
+    if value < 0 or (value == 0 and least == "> 0"):
+        raise InputError(Fault(key, text, "is out of range", unit, least))
     return value

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from porescale.common.core.errors import Fault, InputError, PorescaleWarning
+from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.types import AnyArray
 from porescale.common.core.units import to_si
+from porescale.piv import given
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run
@@ -54,34 +54,42 @@ def measure(
     film : a film, a stack of pictures in one TIFF file, a folder or pattern of pictures; or files, or arrays (rows,
     columns), grey, of 8 or 16 bits or floating, in their order;  second : the second picture of a pair.
 
-    window : px, of the last pass, 64, 32, 16 or 8;  overlap : of neighbouring windows;  search : px, the largest
-    displacement looked for;  smooth : no more than the noise asks for;  no_slip : no flow at rims of solids at rest;
-    mask : file of a bitmap (solid white), film or stack of them, "bright" or "dark" to segment, or an array, True in
-    solids;  polygon : "x,y x,y x,y …" px, solid;  background : what every frame is taken less by;  average : one field
-    from all pairs of a steady flow;  start, end, step : which frames;  region : left, top, right, bottom px;  scale :
-    length of a pixel (m or "0.1 mm"), with which the field is in m and m/s, y up;  interval : time between two frames
-    (s or "5 ms"; a film may say it itself);  time : of frame 0;  out : folder for the files that `piv measure` writes;
-    overlay : a film with arrows among them;  review : a page among them to look at vectors and take wrong ones out;
-    reject : the bitmap that it saves, or an array, True where vectors are wrong.
+    window : px, of the last pass, even, 4 to the smaller side of the pictures;  overlap : of neighbouring windows;
+    search : px, the largest displacement looked for;  smooth : no more than the noise asks for;  no_slip : no flow at
+    rims of solids at rest;  mask : file of a bitmap (solid white), film or stack of them, "bright" or "dark" to
+    segment, or an array, True in solids;  polygon : "x,y x,y x,y …" px, solid;  background : what every frame is taken
+    less by;  average : one field from all pairs of a steady flow;  start, end, step : which frames;  region : left,
+    top, right, bottom px;  scale : length of a pixel (m or "0.1 mm"), with which the field is in m and m/s, y up;
+    interval : time between two frames (s or "5 ms"; a film may say it itself);  time : of frame 0;  out : folder for
+    the files that `piv measure` writes;  overlay : a film with arrows among them;  review : a page among them to look
+    at vectors and take wrong ones out;  reject : the bitmap that it saves, or an array, True where vectors are wrong.
 
     Two pictures, or all averaged, give a `Field`; a film of more gives a list of them, in time.  Pairs in a film that
     show nothing give a PorescaleWarning and no valid vector; fewer than 70 % valid vectors give some too, with what to
-    try.  Raises InputError for what cannot be read or measured.
+    try; so do pictures whose errors are known to be larger than the stated uncertainty (narrow particle images, noise).
+    Raises InputError for what cannot be read or measured.
     """
     from porescale.piv.estimate.measure import Settings
     from porescale.piv.estimate.series import Shots
     from porescale.piv.pipeline import Measurement, write_fields
 
     try:
-        if out is not None and Path(out).is_file():
-            raise InputError(Fault("out", str(out), "is a file", repair="name a folder"))
-        if review and out is None:
-            raise InputError(Fault("review", None, "has no folder to be written to", repair="give out"))
+        given.refuse(
+            given.folder("out", out),
+            given.bitmap("--mask", mask),
+            given.bitmap("--reject", reject),
+            given.polygons("--polygon", polygon),
+            given.region("--region", region),
+        )
+        for key, wanted in (("overlay", overlay), ("review", review)):
+            if wanted and out is None:
+                raise InputError(Fault(key, None, "has no folder to be written to", repair="give out"))
         if no_slip and mask is None and not polygon:
             raise InputError(Fault("no_slip", None, "there are no solids", repair="give mask or polygon"))
         if background not in ("none", "mean", "least"):
             raise InputError(Fault("background", str(background), "is unknown", allowed="none, mean, least"))
-        frames = _film(film, second, start=start, end=end, step=step, region=region)
+        box = None if region is None else tuple(map(int, region))
+        frames = _film(film, second, start=start, end=end, step=step, region=box)
         seconds = 1 / frames.rate if interval is None and frames.rate else _si("interval", interval, "s")
         pixel = _si("scale", scale, "m")
         if pixel is not None and seconds is None:
@@ -103,7 +111,7 @@ def measure(
 
         written = write_fields(work, kept(), None if out is None else Path(out), overlay=overlay, review=review)
         for doubt in written["doubts"]:
-            warnings.warn(_words(doubt), PorescaleWarning, stacklevel=2)
+            _warn(doubt)
     except InputError as error:
         raise _in_python(error) from None
     return fields[0] if work.total == 1 else fields
@@ -161,10 +169,12 @@ def render(
 
 def _film(film: Films, second: Path_ | AnyArray | None, **chosen: Any) -> Film:
     """Files or arrays as a film."""
-    from porescale.piv.images.film import Held, open_film
+    from porescale.piv.images.film import Held, open_film, opened
 
-    if second is None and (film is None or getattr(film, "ndim", 3) == 2):
+    if second is None and (film is None or getattr(film, "ndim", 3) < 3):
         raise InputError(Fault("film", None, "is a single picture", repair="give two, or a film"))
+    if second is None and not isinstance(film, Path | Iterable):
+        raise InputError(Fault("film", str(film), f"is no film but {type(film).__name__}", repair="give a path"))
     many = film if second is None else [film, second]
     items: list[Any] = [many] if isinstance(many, str | Path) else list(many)
     if not all(isinstance(it, np.ndarray) for it in items):
@@ -172,13 +182,10 @@ def _film(film: Films, second: Path_ | AnyArray | None, **chosen: Any) -> Film:
             problem, repair = "is neither files nor arrays", "give paths alone, or arrays alone"
             raise InputError(Fault("film", ", ".join(type(it).__name__ for it in items), problem, repair=repair))
         return open_film(items, **chosen)
-    for number, it in enumerate(items):
-        if it.ndim != 2 or it.dtype.kind not in "uif" or (it.dtype.kind == "f" and not np.isfinite(it).all()):
-            given = f"picture {number}: {' x '.join(map(str, it.shape))} of {it.dtype}"
-            raise InputError(Fault("film", given, "is no grey picture", allowed="(rows, columns) of finite numbers"))
+    given.refuse(*(given.grey("film", it, f"picture {number}: ") for number, it in enumerate(items)))
     if not items:
         raise InputError(Fault("film", None, "holds no pictures", repair="give two or more"))
-    open_film(["-", "-"], **chosen)  # checks start, end and step
+    opened(["-", "-"], **chosen)  # checks start, end, step and region
     return Held((), pictures=tuple(items), **chosen)
 
 
@@ -197,7 +204,8 @@ def _si(key: str, value: float | str | None, unit: str) -> float | None:
 
 
 def _warn(text: str) -> None:
-    warnings.warn(text, PorescaleWarning, stacklevel=6)
+    """A doubt of a command as a warning in Python: at the caller's line, under the names of arguments."""
+    warn(_words(text))
 
 
 def _in_python(error: InputError) -> InputError:

@@ -24,6 +24,7 @@ from porescale.piv.estimate.advice import FEW_VALID, Pair, advice
 from porescale.piv.estimate.measure import Settings, Vectors
 from porescale.piv.estimate.rejected import rejections, without
 from porescale.piv.estimate.series import Shots, as_grid, averaged, corner, measured, whole_size
+from porescale.piv.estimate.understated import understated
 from porescale.piv.fields.field import Field, in_metres, in_pixels, on_picture, write_csv, write_openpiv
 from porescale.piv.fields.overlay import overlay_film
 from porescale.piv.fields.pictures import quiver, vorticity
@@ -149,8 +150,8 @@ def write_fields(
 
     overlay : a film of the pictures with arrows, too, unless fields are averaged;  review : a page of the pair with the
     fewest valid vectors.  Returns counts of pairs and vectors, the names of the files, and ``doubts``: where fewer than
-    FEW_VALID of the vectors are valid, that, and what to try.  InputError where hardly a vector is valid: the pictures
-    are not of one flow.
+    FEW_VALID of the vectors are valid, that, and what to try; else why errors are larger than stated, if they are.
+    InputError where hardly a vector is valid: the pictures are not of one flow.
     """
     counts = {"pairs": 0, "vectors": 0, "valid": 0, "replaced": 0, "solid": 0}
     files: list[Path] = []
@@ -239,13 +240,16 @@ def strangers(measurement: Measurement, worst: Worst) -> InputError:
 
 
 def doubts(measurement: Measurement, seen: tuple[int, int], worst: Worst | None) -> list[str]:
-    """That too few vectors are valid, and what the pair with the fewest says to try; nothing where enough are.
+    """That too few vectors are valid, and what the pair with the fewest says to try; where enough are, why its errors
+    are larger than stated, if they are.
 
     seen : numbers of valid vectors and of all, in pairs that show anything: the others have been said already.
     """
     share = seen[0] / max(1, seen[1])
-    if worst is None or not seen[1] or share >= FEW_VALID:
+    if worst is None or not seen[1]:
         return []
+    if share >= FEW_VALID:
+        return understated(measurement.pair(worst.number, worst.field), measurement.settings)
     pair = "" if measurement.total == 1 else f" ({100 * worst.share:.0f} % of pair {worst.number})"
     found = advice(measurement.pair(worst.number, worst.field), measurement.settings)
     if not found:

@@ -1,6 +1,7 @@
 """Measuring pictures from Python: stacks in one TIFF file, arrays and files give the same vectors as the command."""
 
 import tracemalloc
+import warnings
 
 import cv2
 import numpy as np
@@ -83,7 +84,6 @@ def test_a_stack_is_read_a_page_at_a_time(tmp_path):
     assert whole > 60 * 300 * 400
 
 
-@pytest.mark.filterwarnings("ignore:Corrupt EXIF")
 def test_a_stack_among_pictures_and_what_is_no_stack_are_refused(tmp_path):
     stack = write_stack(tmp_path / "film.tif", noise("uint8"))
     with pytest.raises(InputError, match="is a stack of 5 pictures; give it alone, or single pictures"):
@@ -95,9 +95,13 @@ def test_a_stack_among_pictures_and_what_is_no_stack_are_refused(tmp_path):
     assert not is_stack(write_stack(tmp_path / "preview.tif", preview))
     (tmp_path / "torn.tif").write_bytes(stack.read_bytes()[:3000])
     (tmp_path / "text.tif").write_text("no picture")
-    for name in ("torn.tif", "text.tif"):
-        with pytest.raises(InputError, match=r"cannot be read|is a single picture"):
-            list(open_film([tmp_path / name]))
+    wide = write_stack(tmp_path / "wide.tif", noise("uint16"))
+    (tmp_path / "short.tif").write_bytes(wide.read_bytes()[: -2 * SIZE[0] * SIZE[1]])
+    for name in ("torn.tif", "text.tif", "short.tif"):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with pytest.raises(InputError, match="cannot be read"):
+                list(open_film([tmp_path / name]))
 
 
 def test_arrays_files_and_a_stack_give_the_vectors_of_the_command(tmp_path, capsys):
@@ -180,12 +184,21 @@ def test_wrong_arguments_are_named_as_in_python(wrong, said):
     assert len(str(caught.value).splitlines()) == 1
 
 
-def test_a_pair_of_a_film_that_shows_nothing_is_a_warning():
+def test_a_pair_of_a_film_that_shows_nothing_is_a_warning_at_the_callers_line(tmp_path):
     first, second = pair()
-    with pytest.warns(PorescaleWarning, match="no tracers"):
+    with pytest.warns(PorescaleWarning, match="frames 1 and 2: pictures: no tracers") as caught:
         fields = piv.measure([first, second, 0 * first])
     assert not fields[1].valid.any()
     assert fields[0].valid.all()
+    assert caught[0].filename == __file__
+    masks = write_files(tmp_path / "masks", [0 * first, 0 * first, 0 * first + 255])
+    with pytest.warns(PorescaleWarning, match="frames 1 and 2: mask: covers the whole picture"):
+        piv.measure([first, second, first], mask=masks)
+
+
+def test_a_film_of_pictures_too_small_is_refused():
+    with pytest.raises(InputError, match="pictures = '3 x 64': are too small"):
+        piv.measure([it[:, :3] for it in (*pair(), *pair())])
 
 
 def test_piv_is_a_module_of_the_package():

@@ -10,7 +10,7 @@ from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.common.record.open_run import Run
 from porescale.piv.estimate.measure import measure
 from porescale.piv.fields.field import in_metres, in_pixels
-from porescale.piv.images.camera import Shooting, fastest, frames, shooting
+from porescale.piv.images.camera import Shooting, fastest, frames, shooting, shot_of
 from porescale.piv.images.filmed import write_frames
 from porescale.piv.images.flows import Discs
 from porescale.piv.images.moving import Between, instant, nearest, pushed_out
@@ -128,14 +128,18 @@ def test_frames_are_written_and_the_same_for_the_same_seed(run, tmp_path):
 
 def test_what_cannot_be_filmed_is_refused(run):
     for changes, words in (
-        ({"scale": 1.0}, "--scale"),
+        ({"scale": 1.0}, r"1 x 1|0 x 0 px, and 32 to 4096 a side are allowed \(allowed: .* m\)"),
         ({"scale": 1e-320}, "--scale"),
         ({"interval": 1e-320}, "more than"),
         ({"end": 0.0}, "--interval"),
+        ({"interval": 0.081}, r"leaves fewer than two frames between --start and --end \(allowed: above 0 to 0.08 s\)"),
+        ({"seed": -1}, "--seed = -1: is out of range"),
         ({"exposure": 2.0}, "--exposure"),
     ):
         with pytest.raises(InputError, match=words):
             shot(run, **changes)
+    assert len(list(frames(run, shot(run, interval=0.08)))) == 2  # as long as the time that is filmed
+    assert shot_of(run, Camera(), scale=SIDE / 64, end=0.04).interval == 0.04  # less than 4 px in all of it
     pixel, speed = fastest(run, 0.0, 0.2)
     assert pixel == pytest.approx(SIDE / 1024)
     assert speed == pytest.approx(TURN * np.hypot(1, 1) * SIDE / 2 * (1 - 1 / CELLS))

@@ -8,14 +8,14 @@ import pytest
 
 from porescale.benchmarks.piv import LARGEST, SMALLEST, bench_piv
 from porescale.common.compiled.jit import most_threads, set_threads
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, PorescaleWarning
 from porescale.common.pictures.film import write_film
 from porescale.common.record import snapshots
 from porescale.common.record.model import Snapshot
 from porescale.piv.estimate.measure import Settings, measure
 from porescale.piv.estimate.series import Shots, as_grid, averaged, measured
 from porescale.piv.fields.compare import compare
-from porescale.piv.fields.field import COLUMNS, in_metres, read, write_csv, write_openpiv
+from porescale.piv.fields.field import COLUMNS, in_metres, in_pixels, read, write_csv, write_openpiv
 from porescale.piv.fields.of_run import field_of_run
 from porescale.piv.fields.vortices import gammas, matched, vortices
 from porescale.piv.images import flows
@@ -287,6 +287,25 @@ def test_a_vortex_in_noise_is_one_vortex(peak):
 def test_noise_that_is_not_stated_is_full_of_vortices():  # the check that must fail
     for flow in (flows.uniform(2.0, 1.0), flows.lamb_oseen((384, 384), 0.5, 40.0)):
         assert len(vortices(noisy(flow, 0, stated=0.0))) > 3
+
+
+def test_a_field_that_states_no_uncertainty_has_vortices_by_an_error_that_is_given(tmp_path):
+    # A measured uniform flow is smooth all over: only its uncertainty tells that the rest of its errors are no flow.
+    made = pair(flows.uniform(3.3, -1.7), Camera((384, 384)), 1)
+    uniform = in_pixels(measure(made.first, made.second))
+    turning = noisy(flows.lamb_oseen((384, 384), 4.0, 40.0), 0)
+    assert vortices(uniform) == []
+    for one in (uniform, turning):
+        write_openpiv(one, tmp_path / "a.txt")
+        bare = read(tmp_path / "a.txt")
+        with pytest.warns(PorescaleWarning, match="states no uncertainty") as caught:
+            found = compare(one, bare)
+        assert (len(caught), found.other_vortices) == (1, [])
+        assert [len(vortices(bare, error=NOISE))] == [len(vortices(one))]
+        # The check that must fail: stated as exact, which it is not.
+        assert len(vortices(bare, error=0.0)) > 3 or one is turning
+    with pytest.raises(InputError, match="error = 0: is out of range"):
+        compare(uniform, uniform, error=0)
 
 
 def test_a_vortex_of_replaced_vectors_is_a_guess():

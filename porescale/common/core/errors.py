@@ -1,5 +1,7 @@
 """Faults: what a person can cause, in one line each, and the exit code each kind of failure has."""
 
+import sys
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -85,3 +87,12 @@ class Unstable(PorescaleError):
 
 class PorescaleWarning(UserWarning):
     """What is doubtful and goes on all the same, in one line: `warnings` silences or catches it; commands print it."""
+
+
+def warn(text: str) -> None:
+    """Give ``text`` as a PorescaleWarning at the line that called the package, not at one within it."""
+    package = __name__.split(".")[0]
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).split(".")[0] == package:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(text, PorescaleWarning, stacklevel=level)

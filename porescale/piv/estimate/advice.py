@@ -53,11 +53,11 @@ def advice(pair: Pair, settings: Settings) -> list[str]:
         return []
     tiles = _moved(pair)
     moved = float(np.hypot(*tiles.T).max(initial=0.0))
-    one, two = (_spots(it, pair.solid) for it in (pair.first, pair.second))
+    one, two = (spots(it, pair.solid) for it in (pair.first, pair.second))
     fluid = max(1, int((~pair.solid).sum()))
     seeded = float(one.sum()) / fluid
     bad = ~field.valid & ~field.solid
-    near = _seeding(one, field, settings)
+    near = seeding(one, field, settings)
     bare = bad & (near < BARE * seeded)
     found = []
     if moved > settings.search:
@@ -122,7 +122,7 @@ def _moved(pair: Pair) -> Floats:
     return np.array(found, float).reshape(-1, 2)
 
 
-def _spots(picture: NDArray[Any], solid: Flags) -> Flags:
+def spots(picture: NDArray[Any], solid: Flags) -> Flags:
     """Places of tracers: peaks of 3 x 3 px that stand out of the dark around them by FAINT of the picture's contrast.
 
     Of dense seeding only those that do not touch are counted, half of 0.05 a pixel of 2.8 px.
@@ -134,7 +134,7 @@ def _spots(picture: NDArray[Any], solid: Flags) -> Flags:
     return np.asarray(peak & ~solid, bool)
 
 
-def _seeding(spots: Flags, field: Field, settings: Settings) -> Floats:
+def seeding(spots: Flags, field: Field, settings: Settings) -> Floats:
     """Tracers a pixel around each vector (ny, nx), over two windows."""
     side = 2 * settings.window + 1
     near = cv2.blur(spots.astype(np.float32), (side, side), borderType=cv2.BORDER_REFLECT)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import threads
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Flags, Floats
+from porescale.piv import given
 from porescale.piv.estimate.fit import Equations, at_places, equations, solved, variances
 from porescale.piv.estimate.grid import Grid, nearest
 from porescale.piv.estimate.outliers import THRESHOLD, filled, residual
@@ -20,18 +21,21 @@ from porescale.piv.estimate.rims import Rims, rims
 from porescale.piv.estimate.smoothing import smoothed
 from porescale.piv.images.prepare import Ready, ready
 
+SMALLEST = 4
+"""Side of windows, and of pictures, px, at least."""
+
 
 @dataclass(frozen=True)
 class Settings:
     """How to measure.
 
-    window : px, of the last pass, even;  overlap : of neighbouring windows, 0 to below 1;  search : px, largest
-    displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation, at most;
-    stiffness : weight of second derivatives in them, over that of the pictures, in knots' distances;  noise, slack :
-    residuals from which a pixel counts for less, over the pictures' noise, and in px of displacement;  curved : paths
-    bend as in a steady flow;  smooth : by cross-validation at the end;  no_slip : the flow stands still at the rims of
-    solids that both pictures have at one place;  least_correlation : below it, alone or in the
-    median around, a vector is invalid.
+    window : px, of the last pass, even, 4 to the smaller side of the pictures;  overlap : of neighbouring windows, 0 to
+    below 1;  search : px, largest displacement that the first pass looks for;  updates : Gauss-Newton updates after the
+    last correlation, at most;  stiffness : weight of second derivatives in them, over that of the pictures, in knots'
+    distances;  noise, slack : residuals from which a pixel counts for less, over the pictures' noise, and in px of
+    displacement;  curved : paths bend as in a steady flow;  smooth : by cross-validation at the end;  no_slip : the
+    flow stands still at the rims of solids that both pictures have at one place;  least_correlation : below it, alone
+    or in the median around, a vector is invalid.
     """
 
     window: int = 16
@@ -48,18 +52,17 @@ class Settings:
 
     def check(self, size: tuple[int, int]) -> None:
         """Raises InputError for what cannot be measured on pictures of ``size`` (rows, columns)."""
-        faults = []
-        if self.window < 4 or self.window % 2 or self.window > min(size):
-            allowed = f"even, 4 to {min(size)}"
-            faults.append(Fault("--window", self.window, "is not a window of these pictures", "px", allowed))
-        if not 0 <= self.overlap < 1:
-            faults.append(Fault("--overlap", self.overlap, "is out of range", allowed="0 to below 1"))
-        if not 1 <= self.search <= 256:
-            faults.append(Fault("--search", self.search, "is out of range", "px", "1 to 256"))
-        if self.updates < 1:
-            faults.append(Fault("updates", self.updates, "is out of range", allowed=">= 1"))
-        if faults:
-            raise InputError(faults)
+        most = min(size)
+        if most < SMALLEST:
+            sides = " x ".join(map(str, size[::-1]))
+            raise InputError(Fault("pictures", sides, "are too small", "px", f"{SMALLEST} a side and more"))
+        faults = given.whole("--window", self.window, SMALLEST, most, "px")
+        if given.is_whole(self.window) and (faults or self.window % 2):
+            allowed = f"even, {SMALLEST} to {most}"
+            faults = [Fault("--window", self.window, "is not a window of these pictures", "px", allowed)]
+        faults += given.number("--overlap", self.overlap, 0, 1, ends="[)")
+        faults += given.whole("--search", self.search, 1, 256, "px")
+        given.refuse(faults, given.whole("updates", self.updates, 1))
 
     @property
     def firm(self) -> float:
@@ -115,6 +118,8 @@ def measure(
     """
     settings = settings or Settings()
     masks = solid if isinstance(solid, tuple) else (solid, solid)
+    if len(masks) != 2:
+        raise InputError(Fault("solid", f"{len(masks)} masks", "are not one for each of two pictures"))
     check_pictures(first, second, masks, settings)
     reach = 2 * max(16, settings.window)
     pair = ready(first, masks[0], reach), ready(second, masks[1], reach)
@@ -124,15 +129,20 @@ def measure(
 def check_pictures(
     first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | None], settings: Settings
 ) -> None:
-    """Raise InputError for sizes that differ, masks that do not fit, and pictures that show nothing (``unseen``)."""
-    if first.shape != second.shape or first.ndim != 2:
+    """Raise InputError for what is no grey picture or mask, sizes that differ, masks that do not fit, and pictures that
+    show nothing (``unseen``).
+    """
+    one_each = masks[:1] if masks[0] is masks[1] else masks
+    pictures = given.grey("pictures", first, "first: "), given.grey("pictures", second, "second: ")
+    given.refuse(*pictures, *(given.flags("--mask", it) for it in one_each))
+    if first.shape != second.shape:
         sizes = " and ".join("x".join(str(side) for side in it.shape[1::-1]) for it in (first, second))
         raise InputError(Fault("pictures", sizes, "are not of one size"))
     settings.check((first.shape[0], first.shape[1]))
     for picture, mask in zip((first, second), masks, strict=True):
         if mask is not None and mask.shape != picture.shape:
             sizes = " and ".join("x".join(str(side) for side in it.shape[::-1]) for it in (mask, picture))
-            raise InputError(Fault("--mask", sizes, "the mask is not of the pictures' size"))
+            raise InputError(Fault("--mask", sizes, "the bitmap is not of the pictures' size"))
     fault = unseen((first, second), masks)
     if fault is not None:
         raise InputError(fault)

@@ -21,11 +21,7 @@ def rejections(source: str | Flags | None, film: Film) -> Iterator[Flags | None]
     if isinstance(source, str) and source in SEGMENTS:
         raise InputError(Fault("--reject", source, "is no bitmap", repair="give one saved by the page of --review"))
     try:
-        for frame, flags in zip(film, masks(source, [], film), strict=False):
-            if flags is not None and flags.shape != frame.shape:
-                sizes = " and ".join("x".join(str(side) for side in it.shape[1::-1]) for it in (flags, frame))
-                raise InputError(Fault("--reject", sizes, "the bitmap is not of the pictures' size"))
-            yield flags
+        yield from masks(source, [], film)
     except InputError as error:
         named = [replace(it, key="--reject" if it.key == "--mask" else it.key) for it in error.faults]
         raise InputError(named) from None

@@ -55,6 +55,7 @@ def measured(shots: Shots, settings: Settings, warn: Callable[[str], object] | N
     count = 0
     for (first, mask_a), (second, mask_b) in shots.pairs():
         count += 1
+        settings.check((first.shape[0], first.shape[1]))
         fault = None if warn is None else unseen((first, second), (mask_a, mask_b))
         if warn is not None and fault is not None:
             number = shots.film.start + (count - 1) * shots.film.step

@@ -9,6 +9,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
+from porescale.piv import given
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.surface import Difference, Surface, difference, of_field
 from porescale.piv.fields.vortices import ALIKE, Vortex, matched, vortices
@@ -80,13 +81,22 @@ def compare(
     within: float | None = None,
     factor: float = ALIKE,
     surfaces: tuple[Surface | None, Surface | None] = (None, None),
+    error: float | None = None,
 ) -> Comparison:
     """Compare ``other`` with ``reference``.
 
     within, factor : distance (None: the larger radius) and factor in circulation up to which vortices of one sign
-    match;  surfaces : of the piles; what a field has solid stands for one that is None.  InputError where the fields
-    share no fluid, or one is in pixels and the other in metres.
+    match;  surfaces : of the piles; what a field has solid stands for one that is None;  error : standard deviation of
+    a component of fields that state no uncertainty, whose vortices are not looked for without it, with a
+    PorescaleWarning.  InputError where the fields share no fluid, or one is in pixels and the other in metres.
     """
+    repair = "give fields of piv.measure, or of field_of_run"
+    for key, field in (("reference", reference), ("other", other)):
+        if not isinstance(field, Field):
+            raise InputError(Fault(key, str(field), f"is no field but {type(field).__name__}", repair=repair))
+    near = [] if within is None else given.number("within", within, 0, ends="(]")
+    stated = [] if error is None else given.number("error", error, 0, ends="(]")
+    given.refuse(near, given.number("factor", factor, 1, ends="(]"), stated)
     if reference.upwards != other.upwards:
         repair = "give both a scale, or none"
         raise InputError(Fault("fields", None, "one has y up (metres), the other y down (pixels)", repair=repair))
@@ -101,7 +111,7 @@ def compare(
     size = np.hypot(du, dv)[common]
     first = np.concatenate([reference.u[common], reference.v[common]])
     second = np.concatenate([u[common], v[common]])
-    own, theirs = vortices(reference), vortices(other)
+    own, theirs = vortices(reference, error=error), vortices(other, error=error)
     direction, aligned = _direction(reference, u, v, common, speed)
     tops = [known or of_field(field) for known, field in zip(surfaces, (reference, other), strict=True)]
     piles = None if tops[0] is None or tops[1] is None else (tops[0], tops[1])

@@ -21,7 +21,8 @@ SOLID = 0.5
 
 
 def field_of_run(folder: Path, time: float | None = None) -> Field:
-    """The fluid's velocity in a run folder, or a field of a measured film, nearest to ``time`` s (None: the last).
+    """The fluid's velocity in a run folder, its uncertainty zero, or a field of a measured film, nearest to ``time`` s
+    (None: the last).
 
     InputError where the folder holds neither.
     """
@@ -69,7 +70,8 @@ def _field(grid: Grid) -> Field:
     u, v = np.asarray(velocity[..., 0], float), sign * np.asarray(velocity[..., 1], float)
     valid = np.asarray(cells["valid"] > 0) if "valid" in cells else ~solid
     none = np.full((ny, nx), np.nan)
-    spread = np.where(valid, cells["uncertainty"], np.inf) if "uncertainty" in cells else none
+    exact = np.where(solid, np.nan, 0.0)  # what a simulation computes has no error of measurement
+    spread = np.where(valid, cells["uncertainty"], np.inf) if "uncertainty" in cells else exact
     return Field(
         x, y, np.where(solid, np.nan, u), np.where(solid, np.nan, v), valid, ~valid & ~solid, solid,
         cells.get("correlation", none), spread, upwards=up,

@@ -15,7 +15,7 @@ from porescale.common.core.types import Floats
 from porescale.piv.fields.arrows import draw_arrows
 from porescale.piv.fields.compare import Comparison
 from porescale.piv.fields.field import Field
-from porescale.piv.fields.vortices import vortices
+from porescale.piv.fields.vortices import Vortex, vortices
 
 
 def quiver(
@@ -41,7 +41,7 @@ def vorticity(field: Field, path: Path) -> Path:
     _painted(
         figure, axes, field, field.vorticity(), "vorticity, " + ("1/s" if field.upwards else "a frame"), centred=True
     )
-    _marked(axes, field)
+    _marked(axes, vortices(field))
     return _saved(figure, path)
 
 
@@ -53,10 +53,11 @@ def comparison(reference: Field, other: Field, found: Comparison, path: Path, ti
     figure = Figure(figsize=(5 * count, 5), layout="constrained")
     panels = figure.subplots(1, count)
     top = max(_largest(reference.vorticity()), _largest(other.vorticity()))
-    for axes, field, title in zip(panels[:2], (reference, other), titles, strict=True):
+    both = (found.reference_vortices, found.other_vortices)
+    for axes, field, cores, title in zip(panels[:2], (reference, other), both, titles, strict=True):
         _dressed(axes, field)
         _painted(figure, axes, field, field.vorticity(), "vorticity", centred=True, top=top)
-        _marked(axes, field)
+        _marked(axes, cores)
         axes.set_title(title)
     _dressed(panels[2], reference)
     size = np.hypot(found.difference_u, found.difference_v) / found.speed
@@ -111,9 +112,9 @@ def _largest(values: Floats) -> float:
     return float(np.percentile(known, 99)) or 1e-300 if known.size else 1.0
 
 
-def _marked(axes: Axes, field: Field) -> None:
-    """Vortices as circles of their cores, signed."""
-    for vortex in vortices(field)[:20]:
+def _marked(axes: Axes, found: list[Vortex]) -> None:
+    """Vortices as circles of their cores, signed; the 20 strongest."""
+    for vortex in found[:20]:
         around = np.linspace(0, 2 * np.pi, 60)
         axes.plot(vortex.x + vortex.radius * np.cos(around), vortex.y + vortex.radius * np.sin(around), "k-", lw=1)
         axes.text(vortex.x, vortex.y, "+" if vortex.circulation > 0 else "−", ha="center", va="center")

@@ -7,12 +7,13 @@ uniform flow has cores as large as those of vortices: a core counts where it tur
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import cv2
 import numpy as np
 
+from porescale.common.core.errors import warn
 from porescale.common.core.types import Flags, Floats
 from porescale.piv.fields.field import Field
 
@@ -29,7 +30,7 @@ EXCEEDS = 4.0
 all of a core together turn it by one at most; of a thousand places the largest of normal numbers is 3.2.
 """
 ROUND_OFF = 16 * float(np.finfo(np.float32).eps)
-"""Error of a component over the largest speed, at least: files of runs hold single precision."""
+"""Error of a component over the largest speed, at least, of exact fields too: files of runs hold single precision."""
 LEAST = 5
 """Grid points of a core, at least: fewer may be an outlier with its neighbours."""
 
@@ -86,13 +87,25 @@ def gammas(field: Field, reach: int = REACH) -> tuple[Floats, Floats]:
     return found[0], found[1]
 
 
-def vortices(field: Field, reach: int = REACH) -> list[Vortex]:
+def vortices(field: Field, reach: int = REACH, error: float | None = None) -> list[Vortex]:
     """Vortices by falling strength: connected cores of |Gamma 2| > 2/pi, centred where |Gamma 1| is largest in them.
 
-    Only such as exceed the vectors' uncertainty, EXCEEDS times; where none is stated, ROUND_OFF.
+    Only such as exceed the vectors' uncertainty, EXCEEDS times, and ROUND_OFF (an exact field states zero).
+
+    error : standard deviation of a component, as u, of a field that states no uncertainty (text of OpenPIV).  Without
+    it nothing tells such a field's vortices from its errors, which smoothing makes alike over many grid steps: none are
+    looked for, with a PorescaleWarning.
     """
-    if min(field.u.shape) < 2:
+    if min(field.u.shape) < 2 or field.solid.all():
         return []
+    if np.isnan(field.uncertainty[~field.solid]).all():
+        if error is None:
+            warn(
+                "a field states no uncertainty, without which errors pass for vortices: none are looked for in it; give"
+                " the error of a component to look for them"
+            )
+            return []
+        field = replace(field, uncertainty=np.where(field.valid, error, np.inf))
     one, two = gammas(field, reach)
     turning = np.nan_to_num(field.vorticity())
     area = abs((field.x[1] - field.x[0]) * (field.y[1] - field.y[0]))
@@ -128,8 +141,6 @@ def _excess(slopes: Sequence[Floats], inside: Flags) -> float:
 def _error(field: Field, inside: Flags) -> float:
     """Error of a component in a core: the rms of its valid vectors' uncertainty; infinite where most are replaced."""
     least = ROUND_OFF * float(np.nanmax(np.hypot(field.u, field.v)))
-    if not np.isfinite(field.uncertainty).any():
-        return least
     known = field.uncertainty[inside & field.valid & np.isfinite(field.uncertainty)]
     return max(least, float(np.sqrt(np.mean(known**2)))) if 2 * known.size > inside.sum() else np.inf
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.record.open_run import Run
+from porescale.piv import given
 from porescale.piv.images.flows import Discs
 from porescale.piv.images.moving import Between, Instant, grid_of, instant
 from porescale.piv.images.spots import add_spots, coverage
@@ -28,6 +29,8 @@ LARGEST = 4096
 """px a side, at most."""
 LONGEST = 100_000
 """Frames of a film, at most."""
+ROUNDING = 1e-9
+"""Share of an interval by which rounding may move the last frame beyond the end."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,8 @@ def shot_of(
     seed: int = 0,
 ) -> Shooting:
     """How a run is filmed where not all is given: the whole run, SIDE px the longer side, 4 px of the fastest flow
-    between frames.  InputError where the times are not within the run, or there is nothing to film.
+    between frames, the whole time if that is less.  InputError where the times are not within the run, or there is
+    nothing to film.
     """
     first, last = (float(it) for it in run.times[[0, -1]]) if len(run) else (0.0, 0.0)
     begin, stop = first if start is None else start, last if end is None else end
@@ -94,7 +98,7 @@ def shot_of(
         raise InputError(Fault("--start, --end", text, "is not within the run", "s", f"{first:g} to {last:g}"))
     pixel, speed = fastest(run, begin, stop)
     pixel = pixel if scale is None else scale
-    pause = 4 * pixel / speed if interval is None else interval
+    pause = min(4 * pixel / speed, stop - begin) if interval is None else interval
     return shooting(run, Shooting(camera, pixel, pause, begin, stop, exposure, seed))
 
 
@@ -106,17 +110,18 @@ def shooting(run: Run, shot: Shooting) -> Shooting:
     size = tuple(round(min(side, most) / shot.scale) if shot.scale > 0 else 0 for side in (ny * dy, nx * dx))
     faults = []
     if min(size) < 32 or max(size) > LARGEST:
-        given = f"{size[1]} x {size[0]}"
-        faults.append(Fault("--scale", shot.scale, f"gives pictures of {given} px", "m", f"32 to {LARGEST} px a side"))
-    if shot.interval <= 0 or shot.end <= shot.start:
-        faults.append(Fault("--interval", shot.interval, "leaves no frames between --start and --end", "s"))
-    elif (shot.end - shot.start) / shot.interval > LONGEST:
+        sides = f"gives pictures of {size[1]} x {size[0]} px, and 32 to {LARGEST} a side are allowed"
+        longer, shorter = max(ny * dy, nx * dx), min(ny * dy, nx * dx)
+        least, most = longer / LARGEST, shorter / 32
+        faults.append(Fault("--scale", shot.scale, sides, "m", f"{least:.3g} to {most:.3g}" if least <= most else ""))
+    span = shot.end - shot.start
+    if not 0 < shot.interval <= span * (1 + ROUNDING):
+        problem = "leaves fewer than two frames between --start and --end"
+        faults.append(Fault("--interval", shot.interval, problem, "s", f"above 0 to {span:.6g}"))
+    elif span / shot.interval > LONGEST:
         problem = f"makes more than {LONGEST} frames between --start and --end"
         faults.append(Fault("--interval", shot.interval, problem, "s", "", "take a longer one"))
-    if not 0 <= shot.exposure <= 1:
-        faults.append(Fault("--exposure", shot.exposure, "is out of range", allowed="0 to 1"))
-    if faults:
-        raise InputError(faults)
+    given.refuse(faults, given.number("--exposure", shot.exposure, 0, 1), given.whole("--seed", shot.seed, 0))
     camera = replace(shot.camera, size=(size[0], size[1]))
     camera.check()
     return replace(shot, camera=camera)
@@ -133,7 +138,7 @@ def frames(run: Run, shot: Shooting) -> Iterator[Frame]:
     index = int(np.clip(np.searchsorted(times, shot.start, side="right") - 1, 0, max(0, len(times) - 2)))
     pair = _pair(run, index)
     tracers = _Tracers(pair.first, shot, random)
-    count = int(np.floor((shot.end - shot.start) / shot.interval + 1e-9)) + 1
+    count = int(np.floor((shot.end - shot.start) / shot.interval + ROUNDING)) + 1
     now = shot.start
     tracers.even(pair, now)
     for number in range(count):

@@ -12,14 +12,18 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.given_file import given_bytes, require_finite
+from porescale.piv import given
 from porescale.piv.images import stacks
+from porescale.piv.images.numbered import doubt_of_order, natural
 
 Picture = NDArray[Any]
 Box = tuple[int, int, int, int]
 
 STILLS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm", ".webp")
+LEAST = {"start": 0, "step": 1, "end": 1}
+"""Least numbers of frames that choose among those of a film."""
 
 
 def picture(path: Path) -> Picture:
@@ -69,12 +73,35 @@ class Film:
                 shapes = " and ".join(f"{it[1]} x {it[0]}" for it in (size, frame.shape))
                 raise InputError(Fault("frame", number, f"pictures are not of one size: {shapes}"))
             size = frame.shape
-            yield frame if self.region is None else _cut(frame, self.region)
+            yield self.cut(frame)
+
+    def cut(self, whole: Picture) -> Picture:
+        """The part of a frame, or of its mask, (rows, columns), that is in the region; InputError if it leaves it."""
+        if self.region is None:
+            return whole
+        left, top, right, bottom = self.region
+        rows, columns = whole.shape
+        if not (0 <= left < right <= columns and 0 <= top < bottom <= rows):
+            text = ",".join(map(str, self.region))
+            raise InputError(Fault("--region", text, "leaves the picture", "px", f"within 0,0,{columns},{rows}"))
+        return whole[top:bottom, left:right]
 
     def count(self) -> int:
         """Number of chosen frames; a film whose file does not hold it is decoded."""
-        known = len(self.files) if not self.moving else self._pages or _stated(self.files[0])
-        return len(range(known)[self.start : self.end : self.step]) if known else sum(1 for _ in self._chosen())
+        known = self.certain()
+        if known is None and (stated := _stated(self.files[0])):
+            known = len(range(stated)[self._choice])
+        return sum(1 for _ in self._chosen()) if known is None else known
+
+    def certain(self) -> int | None:
+        """Number of chosen frames of pictures and stacks; None of a film, whose file may state another than it has."""
+        known = self._pages if self.moving else len(self.files)
+        return len(range(known)[self._choice]) if known else None
+
+    @property
+    def _choice(self) -> slice:
+        """The chosen ones of all frames."""
+        return slice(self.start, self.end, self.step)
 
     @property
     def _pages(self) -> int:
@@ -84,11 +111,11 @@ class Film:
     def _chosen(self) -> Iterator[tuple[int, Picture]]:
         """The chosen frames: number and whole picture."""
         if not self.moving:
-            for number in range(len(self.files))[self.start : self.end : self.step]:
+            for number in range(len(self.files))[self._choice]:
                 yield number, picture(self.files[number])
             return
         if total := self._pages:
-            yield from stacks.pages(self.files[0], range(total)[self.start : self.end : self.step])
+            yield from stacks.pages(self.files[0], range(total)[self._choice])
             return
         for number, frame in enumerate(_decoded(self.files[0])):
             if self.end is not None and number >= self.end:
@@ -98,27 +125,36 @@ class Film:
 
 
 def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
-    """A film from one film file or stack, a folder, a pattern (img_*.png), or pictures in the order given.
+    """A film from one film file or stack, a folder or pattern (img_*.png) by the numbers in its names (img2 before
+    img10), or pictures in the order given.
 
-    chosen : start, end, step, region of :class:`Film`.  InputError where there is nothing to read.
+    chosen : start, end, step, region of :class:`Film`.  InputError where there is nothing to read; PorescaleWarning
+    where numbers in the chosen names jump, or names that were given are in the order of their text.
     """
-    bounds = (("start", 0), ("step", 1), ("end", 1))
-    faults = [
-        Fault(f"--{key}", chosen[key], "is out of range", allowed=f">= {least}")
-        for key, least in bounds
-        if chosen.get(key) is not None and chosen[key] < least
-    ]
-    if faults:
-        raise InputError(faults)
+    film = opened(names, **chosen)
+    doubt = doubt_of_order(film.files[film.start : film.end]) if not film.moving else ""
+    if doubt:
+        warn(doubt)
+    return film
+
+
+def opened(names: Sequence[str | Path], **chosen: Any) -> Film:
+    """A film as ``open_film`` gives it, without its warnings."""
+    given.refuse(
+        *(given.whole(f"--{key}", chosen[key], least) for key, least in LEAST.items() if chosen.get(key) is not None),
+        given.region("--region", chosen.get("region")),
+    )
     if len(names) == 1:
         path = Path(names[0])
         if path.is_dir():
-            files = sorted(it for it in path.iterdir() if it.suffix.lower() in STILLS)
+            files = sorted((it for it in path.iterdir() if it.suffix.lower() in STILLS), key=natural)
         elif not path.exists() and any(letter in str(path) for letter in "*?["):
-            files = [Path(it) for it in sorted(glob.glob(str(path)))]
+            files = sorted(map(Path, glob.glob(str(path))), key=natural)
         elif stacks.is_stack(path):
             return Film((path,), **chosen)
         elif path.suffix.lower() in STILLS and path.is_file():
+            if path.suffix.lower() in stacks.SUFFIXES:
+                stacks.count(path)  # a torn stack: says that it cannot be read
             raise InputError(Fault("film", str(path), "is a single picture", repair="give two, or a film"))
         else:
             return Film((path,), rate=_rate(path), **chosen)
@@ -139,13 +175,13 @@ class Held(Film):
 
     pictures: tuple[Picture, ...] = ()
 
-    def count(self) -> int:
+    def certain(self) -> int:
         """Number of chosen frames."""
-        return len(range(len(self.pictures))[self.start : self.end : self.step])
+        return len(range(len(self.pictures))[self._choice])
 
     def _chosen(self) -> Iterator[tuple[int, Picture]]:
         """The chosen frames: number and whole picture."""
-        for number in range(len(self.pictures))[self.start : self.end : self.step]:
+        for number in range(len(self.pictures))[self._choice]:
             yield number, self.pictures[number]
 
 
@@ -166,16 +202,6 @@ def background(film: Film, kind: str) -> NDArray[np.float32] | None:
     if total is None:
         raise InputError(Fault("film", None, "no frames chosen"))
     return total / np.float32(count) if kind == "mean" else total
-
-
-def _cut(frame: Picture, region: Box) -> Picture:
-    """The region of a frame."""
-    left, top, right, bottom = region
-    rows, columns = frame.shape
-    if not (0 <= left < right <= columns and 0 <= top < bottom <= rows):
-        given = ",".join(map(str, region))
-        raise InputError(Fault("--region", given, "leaves the picture", "px", f"within 0,0,{columns},{rows}"))
-    return frame[top:bottom, left:right]
 
 
 def _unreadable(path: Path, error: Exception) -> InputError:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from porescale.common.core.atomic import write_bytes, write_text
 from porescale.common.pictures.film import write_film
 from porescale.common.record.open_run import Run
-from porescale.piv.images.camera import Shooting, frames
+from porescale.piv.images.camera import ROUNDING, Shooting, frames
 
 LOG = logging.getLogger(__name__)
 PATIENCE = 10.0
@@ -33,7 +33,7 @@ def write_frames(run: Run, shot: Shooting, folder: Path) -> int:
         for old in (folder / name).glob("[0-9]*.png"):
             old.unlink()
     count = 0
-    total = int((shot.end - shot.start) / shot.interval + 1e-9) + 1
+    total = int((shot.end - shot.start) / shot.interval + ROUNDING) + 1
     began = last = time.perf_counter()
 
     def painted() -> Iterator[NDArray[Any]]:

@@ -10,18 +10,39 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Flags
-from porescale.piv.images.film import Film, Picture, open_film, picture
+from porescale.piv.images.film import Film, Picture, opened, picture
 from porescale.piv.images.stacks import is_stack
 
 SEGMENTS = ("bright", "dark")
 """Words in a mask's place: segment every frame."""
 GREY = 0.5
-"""Share of white from which a pixel is solid."""
+"""Share of white from which a pixel of a bitmap of more than two values is solid."""
 
 
 def bitmap(image: Picture) -> Flags:
-    """True where a mask picture is white."""
-    return np.asarray(image > GREY * (np.iinfo(image.dtype).max if image.dtype.kind == "u" else 1.0), bool)
+    """True where a mask picture is white: the larger of its two values, whatever they are (0 and 1, 0 and 255).
+
+    Of more values, as lossy files have them, those above half of the largest that its type holds.  InputError where
+    nothing is, though not all is black.
+    """
+    low, high = image.min(), image.max()
+    if low < high and not ((image > low) & (image < high)).any():
+        return np.asarray(image == high, bool)
+    found = _white(image)
+    if high > 0 and not found.any():
+        problem = f"has no pixel above half of white: {low:g} to {high:g} of {_most(image):g}"
+        raise InputError(Fault("--mask", None, problem, repair="save solids white and fluid black"))
+    return found
+
+
+def _white(image: Picture) -> Flags:
+    """True above half of white."""
+    return np.asarray(image > GREY * _most(image), bool)
+
+
+def _most(image: Picture) -> float:
+    """What is white: the largest number of the type, 1 of floating ones."""
+    return float(np.iinfo(image.dtype).max) if image.dtype.kind == "u" else 1.0
 
 
 def polygon(text: str, size: tuple[int, int]) -> Flags:
@@ -53,55 +74,59 @@ def segmented(image: Picture, *, bright: bool, least: int = 9) -> Flags:
 
 
 def masks(source: str | Flags | None, corners: list[str], film: Film) -> Iterator[Flags | None]:
-    """The mask of every chosen frame of ``film``, in turn.
+    """The mask of every chosen frame of ``film``, in turn, cut to its region.
 
     source : None, a bitmap, a film, stack or series of bitmaps (one a frame, frames chosen like the film's), "bright"
     or "dark" to segment each frame, or an array (rows, columns), True in solids of all frames;  corners : polygons that
-    are solid in all.
+    are solid in all.  InputError for masks that are not of the whole pictures' size, or not as many.
     """
-    for frame, found in zip(film, _sources(source, film), strict=False):
-        mask = found
+    for whole, found in zip(replace(film, region=None), _sources(source, film), strict=False):
+        if found is not None and found.shape != whole.shape:
+            sizes = " and ".join("x".join(str(side) for side in it.shape[::-1]) for it in (found, whole))
+            raise InputError(Fault("--mask", sizes, "the bitmap is not of the pictures' size"))
+        mask = None if found is None else film.cut(found)
         if isinstance(source, str) and source in SEGMENTS:
-            mask = segmented(frame, bright=source == "bright")
+            mask = segmented(film.cut(whole), bright=source == "bright")
         for text in corners:
-            left, top = film.region[:2] if film.region else (0, 0)
-            whole = polygon(text, (frame.shape[0] + top, frame.shape[1] + left))[top:, left:]
-            mask = whole if mask is None else mask | whole
+            inside = film.cut(polygon(text, (whole.shape[0], whole.shape[1])))
+            mask = inside if mask is None else mask | inside
         yield mask
 
 
-def _cut(whole: Flags, film: Film) -> Flags:
-    """The part of a mask that is in the film's region."""
-    left, top, right, bottom = film.region or (0, 0, *whole.shape[::-1])
-    return whole[top:bottom, left:right]
-
-
 def _sources(source: str | Flags | None, film: Film) -> Iterator[Flags | None]:
-    """Masks from files, None where there are none."""
+    """Whole masks of a source, None where there are none; what is wrong with its files is said of the mask."""
     if isinstance(source, np.ndarray):
-        yield from repeat(_cut(source.astype(bool), film))
-        return
-    if source is None or source in SEGMENTS:
+        yield from repeat(source.astype(bool))
+    elif source is None or source in SEGMENTS:
         yield from repeat(None)
-        return
+    else:
+        try:
+            yield from _of_files(source, film)
+        except InputError as error:
+            faults = [replace(it, key="--mask", value=source if it.value is None else it.value) for it in error.faults]
+            raise InputError(faults) from None
+
+
+def _of_files(source: str, film: Film) -> Iterator[Flags]:
+    """Whole masks of a bitmap, the same for all frames, or of a film, stack or series of them.
+
+    Frames of a film that is compressed with loss have more than two values: above half of white they are solid.
+    """
     path = Path(source)
     still_picture = path.is_file() and path.suffix.lower() not in (".mp4", ".avi", ".mov", ".mkv", ".webm")
     if still_picture and not is_stack(path):
-        try:
-            still = bitmap(picture(path))
-        except InputError as error:
-            raise InputError([replace(fault, key="--mask") for fault in error.faults]) from None
-        yield from repeat(_cut(still, film))
+        yield from repeat(bitmap(picture(path)))
         return
     if not path.exists() and not any(letter in source for letter in "*?["):
         repair = "name a bitmap, a film, a folder or pattern of bitmaps; or bright or dark, to segment"
         raise InputError(Fault("--mask", source, "is no file", repair=repair))
-    try:
-        several = open_film([source], start=film.start, end=film.end, step=film.step, region=film.region)
-    except InputError as error:
-        raise InputError([replace(it, key="--mask" if it.key == "film" else it.key) for it in error.faults]) from None
+    several = opened([source], start=film.start, end=film.end, step=film.step)
+    total, due = several.certain(), film.certain()
+    if total is not None and due is not None and total > due:
+        problem = f"has {total} masks for {due} frames"
+        raise InputError(Fault("--mask", source, problem, repair="give one for every frame"))
     count = 0
     for frame in several:
         count += 1
-        yield bitmap(frame)
+        yield _white(frame) if total is None else bitmap(frame)
     raise InputError(Fault("--mask", source, f"has {count} masks", repair="give one for every frame"))

@@ -4,6 +4,7 @@ Read by Pillow, which is there: OpenCV decodes all pages before the one that it 
 tifffile needs a further library for LZW.  Pillow reads colours of 16 bits as 8.
 """
 
+import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,7 +32,7 @@ def is_stack(path: Path) -> bool:
     try:
         with _opened(path) as image:
             first = image.size
-            if getattr(image, "n_frames", 1) < 2:
+            if _pages(image) < 2:
                 return False
             image.seek(1)
             return bool(image.size == first)
@@ -42,6 +43,13 @@ def is_stack(path: Path) -> bool:
 def count(path: Path) -> int:
     """Number of pages; InputError if the file cannot be read."""
     with _opened(path) as image:
+        return _pages(image)
+
+
+def _pages(image: Image.Image) -> int:
+    """Number of pages of an opened file; what Pillow warns of in a torn one, it raises an error for, too."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=UserWarning, module="PIL")
         return int(getattr(image, "n_frames", 1))
 
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
+from porescale.piv import given
 from porescale.piv.estimate.grid import Grid
 from porescale.piv.fields.field import Field
 from porescale.piv.images.flows import Discs, Flow
@@ -38,16 +38,16 @@ class Camera:
 
     def check(self) -> None:
         """Raises InputError with every bound that is broken."""
-        bounds = (
-            ("size", min(self.size), min(self.size) >= 8, "8 px a side or more"),
-            ("density", self.density, 0 <= self.density <= 1, "0 to 1"),
-            ("diameter", self.diameter, 0.1 <= self.diameter <= 50, "0.1 to 50"),
-            ("noise", self.noise, self.noise >= 0, ">= 0"),
-            ("lost", self.lost, 0 <= self.lost <= 1, "0 to 1"),
+        size = self.size if isinstance(self.size, tuple | list) and len(self.size) == 2 else (self.size,)
+        sides = [fault for it in size for fault in given.whole("size", it, 8, unit="px")]
+        given.refuse(
+            sides[:1],
+            given.number("density", self.density, 0, 1),
+            given.number("diameter", self.diameter, 0.1, 50, unit="px"),
+            given.number("noise", self.noise, 0),
+            *(given.number(key, getattr(self, key)) for key in ("peak", "sheet", "background", "disc")),
+            given.number("lost", self.lost, 0, 1),
         )
-        faults = [Fault(key, value, "is out of range", allowed=words) for key, value, good, words in bounds if not good]
-        if faults:
-            raise InputError(faults)
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,10 @@ class Pair:
 
 
 def pair(flow: Flow, camera: Camera | None = None, seed: int = 0) -> Pair:
-    """Pictures half an interval before and after mid time.  InputError for a camera out of bounds."""
+    """Pictures half an interval before and after mid time.  InputError for a camera or seed out of bounds."""
     camera = camera or Camera()
     camera.check()
+    given.refuse(given.whole("seed", seed, 0))
     random = np.random.default_rng(seed)
     x, y, light = seeded(flow, camera, random, shares=1 + camera.lost)
     count = round(len(x) * (1 - camera.lost) / (1 + camera.lost))  # in both; the rest half in each

@@ -113,11 +113,16 @@ def test_what_cannot_be_measured_is_said_in_a_line(piv):
         (("measure", *one, "--scale", "1 mm"), "--interval: is needed"),
         (("measure", *one, "--region", "0,0,10"), "--region"),
         (("measure", *one, "--region", "0,0,65,10"), "leaves the picture"),
+        (("measure", *one, "--region", "50,0,20,40"), "is empty (allowed: left below right, and top below bottom)"),
+        (("measure", *one, "--time=-1"), "--time = '-1': is out of range (allowed: >= 0 s)"),
         (("measure", "a/a.png"), "single picture"),
         (("measure", *one, "--no-slip"), "--no-slip: there are no solids"),
         (("measure", "a/exact.csv"), "cannot be read"),
         (("synth", "spiral"), "no such flow"),
+        (("synth", "uniform", "--seed=-1"), "seed = -1"),
         (("compare", "a/exact.csv", "white.png"), "field"),
+        (("compare", "a/exact.csv", "a/exact.csv", "--factor", "1"), "--factor = 1.0: is out of range (allowed: > 1)"),
+        (("compare", "a/exact.csv", "a/exact.csv", "--error", "0"), "--error = 0.0: is out of range (allowed: > 0)"),
     ]
     for tokens, words in refused:
         code, out, said = piv(*tokens)

@@ -1,0 +1,139 @@
+"""What is given to a measurement, checked before anything is done with it: one fault for each that is of no use.
+
+Each check returns the faults of one argument, none where it is good; ``refuse`` raises those of all of them.
+"""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, TypeGuard
+
+import numpy as np
+
+from porescale.common.core.errors import Fault, InputError
+
+BRIGHTEST = 1e7
+"""Size of a grey level, at most: sums of its fourth powers over a block of pixels, and over a thousand pairs, are
+within single precision, and so is a level of 24 bits.
+"""
+
+
+def refuse(*faults: Iterable[Fault]) -> None:
+    """Raise InputError with all ``faults``, if there are any."""
+    found = [fault for several in faults for fault in several]
+    if found:
+        raise InputError(found)
+
+
+def is_whole(value: Any) -> TypeGuard[int]:
+    """Whether it is a whole number, of Python or numpy; True, 3.0 and "3" are none."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
+def whole(key: str, value: Any, least: int, most: int | None = None, unit: str = "") -> list[Fault]:
+    """Faults of a whole number from ``least`` to ``most``, any from ``least`` on where that is None."""
+    allowed = f">= {least}" if most is None else f"{least} to {most}"
+    if not is_whole(value):
+        return [Fault(key, value, f"is no whole number but {_kind(value)}", unit, allowed)]
+    good = least <= value and (most is None or value <= most)
+    return [] if good else [Fault(key, value, "is out of range", unit, allowed)]
+
+
+def number(
+    key: str, value: Any, least: float = -np.inf, most: float = np.inf, unit: str = "", *, ends: str = "[]"
+) -> list[Fault]:
+    """Faults of a finite number from ``least`` to ``most``;  ends : "(" or ")" where an end itself is left out."""
+    low, high = ends[0], ends[1]
+    if most < np.inf:
+        allowed = f"{'above ' if low == '(' else ''}{least:g} to {'below ' if high == ')' else ''}{most:g}"
+    else:
+        allowed = f"{'>' if low == '(' else '>='} {least:g}" if least > -np.inf else "finite"
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+        return [Fault(key, value, f"is no number but {_kind(value)}", unit, allowed)]
+    good = np.isfinite(value) and least <= value <= most
+    good = good and (low == "[" or value > least) and (high == "]" or value < most)
+    return [] if good else [Fault(key, value, "is out of range", unit, allowed)]
+
+
+def region(key: str, value: Any) -> list[Fault]:
+    """Faults of left, top, right, bottom, px: four whole numbers, right and bottom beyond left and top."""
+    allowed = "left, top, right, bottom: four whole px"
+    if value is None:
+        return []
+    if isinstance(value, str) or not _listed(value) or len(value) != 4 or not all(map(is_whole, value)):
+        return [Fault(key, _shown(value), "is no region", allowed=allowed)]
+    left, top, right, bottom = value
+    if left >= right or top >= bottom:
+        return [Fault(key, _shown(value), "is empty", allowed="left below right, and top below bottom")]
+    return []
+
+
+def polygons(key: str, value: Any) -> list[Fault]:
+    """Faults of a list of polygons, each a text "x,y x,y x,y …"."""
+    if not isinstance(value, str) and _listed(value) and all(isinstance(it, str) for it in value):
+        return []
+    allowed = '["x,y x,y x,y …", …], a text for each polygon'
+    return [Fault(key, _shown(value), f"is no list of texts but {_kind(value)}", allowed=allowed)]
+
+
+def bitmap(key: str, value: Any) -> list[Fault]:
+    """Faults of a bitmap: a path, or an array (rows, columns) of flags or finite numbers; None is good."""
+    if value is None or isinstance(value, str | Path):
+        return []
+    allowed = "a path, or an array (rows, columns) of flags"
+    if not isinstance(value, np.ndarray):
+        return [Fault(key, None, f"is neither a path nor an array but {_kind(value)}", allowed=allowed)]
+    if value.ndim != 2 or value.dtype.kind not in "buif" or not np.isfinite(value).all():
+        return [Fault(key, sized(value), "is no bitmap", allowed=allowed)]
+    return []
+
+
+def flags(key: str, value: Any) -> list[Fault]:
+    """Faults of an array (rows, columns), True in solids; None is good."""
+    if value is None or (isinstance(value, np.ndarray) and value.ndim == 2 and value.dtype == bool):
+        return []
+    given = sized(value) if isinstance(value, np.ndarray) else _kind(value)
+    return [Fault(key, given, "is no array of flags", allowed="(rows, columns), True in solids", repair="give a > 0")]
+
+
+def grey(key: str, value: Any, name: str = "") -> list[Fault]:
+    """Faults of a grey picture: (rows, columns) of finite numbers within BRIGHTEST;  name : said before its shape."""
+    if not isinstance(value, np.ndarray):
+        return [Fault(key, f"{name}{_kind(value)}", "is no array", allowed="arrays (rows, columns)")]
+    given = name + sized(value)
+    if value.ndim != 2 or value.dtype.kind not in "uif":
+        return [Fault(key, given, "is no grey picture", allowed="(rows, columns) of numbers")]
+    if value.dtype.kind == "f" and not np.isfinite(value).all():
+        return [Fault(key, given, "is no grey picture", allowed="(rows, columns) of finite numbers")]
+    wide = value.dtype.kind == "f" or value.dtype.itemsize > 2
+    if wide and value.size and max(-float(value.min()), float(value.max())) > BRIGHTEST:
+        problem = f"has grey levels of {float(value.min()):.3g} to {float(value.max()):.3g}"
+        return [Fault(key, given, problem, allowed=f"-{BRIGHTEST:g} to {BRIGHTEST:g}", repair="divide them all by one")]
+    return []
+
+
+def folder(key: str, value: Any) -> list[Fault]:
+    """Faults of a path to a folder that may not be there yet; None is good."""
+    if value is not None and not isinstance(value, str | Path):
+        return [Fault(key, _shown(value), f"is no path but {_kind(value)}", repair="name a folder")]
+    taken = value is not None and Path(value).is_file()
+    return [Fault(key, str(value), "is a file", repair="name a folder")] if taken else []
+
+
+def sized(value: np.ndarray) -> str:
+    """Shape and type of an array in words."""
+    return f"{' x '.join(map(str, value.shape))} of {value.dtype}"
+
+
+def _listed(value: Any) -> bool:
+    """Whether it is a row of things."""
+    return isinstance(value, Sequence) or (isinstance(value, np.ndarray) and value.ndim == 1)
+
+
+def _shown(value: Any) -> str:
+    """What was given, without the spaces of a tuple."""
+    return ",".join(map(str, value)) if _listed(value) and not isinstance(value, str) else str(value)
+
+
+def _kind(value: Any) -> str:
+    """The type of what was given, in a word."""
+    return type(value).__name__
