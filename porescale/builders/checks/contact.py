@@ -27,10 +27,10 @@ def check_contact(scene: Scene) -> list[Fault]:
         faults += _check_kind(key, section, law_class(contact))
     if faults:
         return faults
-    walls = {} if contact.wall_friction is None else {"friction": contact.wall_friction}
     for key, section in sections[1 : 1 + len(scene.material)] or sections[:1]:
         numbers = merged(contact, section)
-        faults += _check_complete(key, numbers, contact) or _check_complete(key, numbers | walls, contact)
+        most = {"friction": max(numbers.get("friction", 0.0), contact.wall_friction or 0.0)}
+        faults += _check_complete(key, numbers | most, contact)
     return faults
 
 
