@@ -73,7 +73,7 @@ def random_discs(deck: Deck, random: Random, seed: int) -> tuple[Body, ...]:
     x1, x2, y1, y2 = deck.domain
     small, large, count = random.smallest, random.largest, random.count(deck.domain)
     if count < 1:
-        raise InputError(Fault("void ratio", random.void_ratio, "leaves no room for a disc", file="in_gm.dat"))
+        raise InputError(Fault("void ratio", random.void_ratio, "leaves no room for a disc", file=str(deck.file)))
     rng = np.random.default_rng(seed)
     radius = small + (large - small) * (np.arange(count) + 0.5) / count
     start, radius = even_start(radius, (x2 - x1, y2 - y1), rng)
@@ -161,7 +161,15 @@ def _frame(deck: Deck, number: int, options: Options) -> Frame:
             velocity=body.velocity[:2], spin=body.velocity[2], long=body.long, material=body.material - 1,
         )  # fmt: skip
     except InputError as error:
-        raise error.in_file(f"in_gm.dat, body {number + 1}") from None
+        raise InputError([_of_body(deck, number, fault) for fault in error.faults]) from None
+
+
+def _of_body(deck: Deck, number: int, fault: Fault) -> Fault:
+    """A fault of a frame as one of its body, with the numbers of its segments from 1."""
+    if isinstance(fault.value, tuple) and fault.value and isinstance(fault.value[0], int):
+        one, other = (value + 1 for value in fault.value)
+        return deck.fault(number, f"crosses itself: elements {one} and {other}", "give the outline in its order")
+    return deck.fault(number, fault.problem, fault.repair)
 
 
 def _heading(body: Body) -> float:

@@ -92,6 +92,11 @@ class Reader:
             shown = int(value) if float(value).is_integer() else value
             self.faults.append(self._fault(name, shown, "makes no sense", expected))
 
+    @property
+    def begun(self) -> int:
+        """Line that the last record begins on, from 1."""
+        return min(self._lines_of.values(), default=self.line)
+
     def more(self) -> bool:
         """Whether another record follows."""
         return any(_words(self._lines[k]) for k in range(self.line, len(self._lines)))

@@ -27,6 +27,7 @@ from porescale.dem.bodies.frames import cells_of
 from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import LOSSES, WORKS, energy_budget
 from porescale.demseg.build import Options, bodies_now, bonded, build, posture, with_bodies
+from porescale.demseg.check import check_bodies
 from porescale.demseg.deck import BC, BONDED, CF, CF0, GM, GO_ON, Body, Deck, boundary_text, grains_text, read_deck
 from porescale.demseg.numbers import plain
 from porescale.demseg.outputs import CONTACTS, bodies_of, contact_cloud, write_breaks, write_emissions, write_places
@@ -50,6 +51,8 @@ class DeckRun:
         """``folder`` holds in_cf.dat or in_cf0.dat where the deck needs one; else see read."""
         self.deck = with_bodies(deck, options.seed)
         before = read_state(folder / CF) if deck.jclid == GO_ON else None
+        if before is None and deck.random is None:
+            check_bodies(deck)
         self._start = self.deck.bodies if before is None else _started(self.deck, before, folder / CF)
         self.built = build(replace(self.deck, bodies=self._start), options)
         self.grains = self.built.grains
@@ -204,7 +207,8 @@ def read(folder: Path, options: Options) -> DeckRun:
 
 def card_of(deck: Deck, options: Options) -> dict[str, Any]:
     """The deck and what was chosen beside it, as the run's card keeps them."""
-    return {"deck": asdict(deck), "options": asdict(options)}
+    kept = {name: value for name, value in asdict(deck).items() if name not in ("file", "lines")}  # where it stands
+    return {"deck": kept, "options": asdict(options)}
 
 
 def _numbers(bodies: tuple[Body, ...]) -> list[tuple[float, ...]]:

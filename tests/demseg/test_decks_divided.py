@@ -89,7 +89,7 @@ def test_without_pressing_nothing_touches(tmp_path):  # the twin that must fail
 
 def test_what_cannot_be_divided_is_named(tmp_path):
     deck = read_deck(decks.write(tmp_path / "a", decks.CLUMP))
-    with pytest.raises(InputError, match=r"in_gm\.dat: body 1: is no single disc"):
+    with pytest.raises(InputError, match=r"in_gm\.dat: line 7, body 1: is no single disc"):
         divided(deck, "cells")
     with pytest.raises(InputError, match=r"in_gm\.dat: thick = 0"):
         divided(read_deck(decks.write(tmp_path / "b", decks.DISC)), "cells")
