@@ -190,11 +190,12 @@ def volonoi(
     seed: Seed = 0,
     overwrite: Annotated[bool, Parameter(help="replace the files")] = False,
 ) -> int:
-    """Make polygons of a deck's discs, thick apart: in_gm_tri.dat (Delaunay) and in_gm_volo.dat (Voronoi)."""
+    """Make polygons of the discs of in_gm.dat, thick apart: in_gm_tri.dat (Delaunay) and in_gm_volo.dat (Voronoi)."""
     from porescale.common.cli.folders import require_writable
     from porescale.common.core.atomic import write_text
     from porescale.demseg.build import with_bodies
-    from porescale.demseg.deck import grains_text, read_deck
+    from porescale.demseg.check import check_bodies
+    from porescale.demseg.deck import grains_text, read_grains
     from porescale.demseg.divide import FILES, divided
 
     place = out or Path()
@@ -202,7 +203,9 @@ def volonoi(
     there = [place / name for name in FILES.values() if (place / name).exists()]
     if there and not overwrite:
         raise InputError(Fault("--out", str(there[0]), "is there already", repair="name another, or --overwrite it"))
-    deck = with_bodies(read_deck(_deck_folder(folder)), seed)
+    given = read_grains(_deck_folder(folder))
+    check_bodies(given)
+    deck = with_bodies(given, seed)
     made = {kind: divided(deck, kind, pressed) for kind in FILES}
     place.mkdir(parents=True, exist_ok=True)
     for kind, each in made.items():

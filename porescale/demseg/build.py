@@ -85,6 +85,11 @@ def random_discs(deck: Deck, random: Random, seed: int) -> tuple[Body, ...]:
     return tuple(Body(random.material, (0.0, 0.0, 0.0), discs=((r, x, y, 0.0),)) for r, (x, y) in rows)
 
 
+def width_of(deck: Deck, options: Options) -> float:
+    """Width of segments that weigh, see module."""
+    return options.rod if options.rod is not None else 2.0 * deck.thick or ROD
+
+
 def laws(deck: Deck, release: str) -> Linear | Materials:
     """The law of the deck's materials."""
     own = {
@@ -153,8 +158,7 @@ def _grains(
 
 
 def _frame(deck: Deck, number: int, options: Options) -> Frame:
-    body = deck.bodies[number]
-    width = options.rod if options.rod is not None else 2.0 * deck.thick or ROD
+    body, width = deck.bodies[number], width_of(deck, options)
     try:
         return from_ends(
             np.array(body.segments).reshape(-1, 2, 2), deck.thick, deck.stuff[body.material - 1].density, width=width,

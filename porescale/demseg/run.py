@@ -30,6 +30,7 @@ from porescale.demseg.build import Options, bodies_now, bonded, build, posture, 
 from porescale.demseg.check import check_bodies
 from porescale.demseg.deck import BC, BONDED, CF, CF0, GM, GO_ON, Body, Deck, boundary_text, grains_text, read_deck
 from porescale.demseg.numbers import plain
+from porescale.demseg.options import kept_options, require_kept
 from porescale.demseg.outputs import CONTACTS, bodies_of, contact_cloud, write_breaks, write_emissions, write_places
 from porescale.demseg.state import read_state, state_text
 from porescale.demseg.tension import read_tensions, tension_text
@@ -49,8 +50,10 @@ class DeckRun:
 
     def __init__(self, deck: Deck, options: Options, folder: Path) -> None:
         """``folder`` holds in_cf.dat or in_cf0.dat where the deck needs one; else see read."""
-        self.deck = with_bodies(deck, options.seed)
+        self.deck, self.options = with_bodies(deck, options.seed), options
         before = read_state(folder / CF) if deck.jclid == GO_ON else None
+        if before is not None:
+            require_kept(before, self.deck, options, folder / CF)
         if before is None and deck.random is None:
             check_bodies(deck)
         self._start = self.deck.bodies if before is None else _started(self.deck, before, folder / CF)
@@ -193,7 +196,12 @@ class DeckRun:
         after = replace(
             self.deck, bodies=bodies_now(self.deck, self.built), jclid=GO_ON, iloop=self.deck.iloop + self.step
         )  # fmt: skip
-        kept = {"start": _numbers(self._start), "heading": self.built.heading, "grains": self.grains.state()}
+        kept = {
+            "start": _numbers(self._start),
+            "options": kept_options(self.deck, self.options),
+            "heading": self.built.heading,
+            "grains": self.grains.state(),
+        }
         write_text(folder / f"new_{GM}", grains_text(after))
         write_text(folder / f"new_{BC}", boundary_text(after))
         write_text(folder / f"new_{CF}", state_text(kept))

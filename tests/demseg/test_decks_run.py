@@ -114,6 +114,43 @@ def test_another_place_than_the_continuation_has_is_refused(tmp_path):
         read(folder, OPTIONS)
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        (Options(rule="each"), Options(), ["--rule: is outline, but the run before had each; give --rule each"]),
+        (Options(rod=0.3), Options(), ["--rod: is 0.1, but the run before had 0.3; give --rod 0.3"]),
+        (Options(), Options(release="force"), ["--release: is force, but the run before had overlap; give --release"]),
+        (Options(release="force", rule="printed", rod=0.2), Options(rule="each"), ["--release", "--rule", "--rod"]),
+    ],
+)
+def test_a_run_goes_on_with_its_options_and_no_others(tmp_path, before, after, said):
+    first = read(decks.write(tmp_path / "a", decks.SEGMENT), before)
+    first.advance(5)
+    first.write_next(tmp_path / "a")
+    folder = go_on(tmp_path / "a", tmp_path / "b", "1 5 20 20 10")
+    assert read(folder, before).options == before
+    with pytest.raises(InputError) as caught:
+        read(folder, after)
+    assert len(caught.value.faults) == len(said)
+    for fault, each in zip(caught.value.faults, said, strict=True):
+        assert f"{folder / 'in_cf.dat'}: {each}" in fault.line()
+    # Files of before options were kept have none, and are read as they are.
+    text = (folder / "in_cf.dat").read_text()
+    assert text.count("\noptions/") == 3
+    lines = text.splitlines(keepends=True)
+    gone = [k for k, line in enumerate(lines) if line.startswith("options/")]
+    (folder / "in_cf.dat").write_text(
+        "".join(line for k, line in enumerate(lines) if k - 1 not in gone and k not in gone)
+    )
+    read(folder, after)
+
+
+def test_a_rule_is_no_matter_where_there_are_only_discs(tmp_path):  # nothing to refuse
+    first = read(decks.write(tmp_path / "a"), Options(rule="each", rod=0.3))
+    first.write_next(tmp_path / "a")
+    read(go_on(tmp_path / "a", tmp_path / "b", "1 5 20 20 10"), Options())
+
+
 def test_the_chain_is_bonded_by_what_the_tutorial_prints(tmp_path):
     # Section II-3: discs 2 apart of radius 1.1, k 1e8: -20000000 with each neighbour.  Coordinates up to 50 round the
     # overlap 0.2 by 50 eps, so the force by 1e8 50 eps < 2e-6.
