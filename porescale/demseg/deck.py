@@ -242,7 +242,7 @@ def _boundary(file: Reader, deck: Deck) -> Deck:
     (npfd,) = file.record(("npfd", int))
     file.must(0 <= npfd <= most, "npfd", npfd, f"0 to {most}")
     watched = [f"recorded body {k + 1}" for k in range(int(npfd) if npfd <= most else 0)]
-    recorded = [int(n) for n in file.record(*((name, int) for name in watched))] if watched else []
+    recorded = [int(n) for n in file.record(*((name, int) for name in watched), rows=None)] if watched else []
     for name, n in zip(watched, recorded, strict=True):
         file.must(1 <= n <= most, name, n, f"1 to {most}")
     (npbd,) = file.record(("npbd", int))
