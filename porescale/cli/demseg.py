@@ -51,6 +51,7 @@ def run(
     quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
 ) -> int:
     """Run a deck: run folder, the files of DEMseg, and new_in_*.dat for the run that goes on from its end."""
+    from porescale.common.api.run import warn
     from porescale.common.record.drive import check_resume
     from porescale.demseg.build import Options
     from porescale.demseg.deck import read_deck
@@ -71,6 +72,7 @@ def run(
         check_resume(where, {"package": PACKAGE, "name": name, "scene": scene})
     use_threads(threads)
     model = DeckRun(deck, options, folder)
+    warn(model.doubts())
     outcome = drive_deck(model, where, name, scene, resume=resume, overwrite=overwrite, quiet=quiet)
     if not quiet:
         print(summary("porescale", name, where, outcome).rsplit("\n", 1)[0])

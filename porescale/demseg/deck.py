@@ -95,7 +95,7 @@ class Deck:
     """A deck; names as in the module's layout.  bodies: none in mode 0, where ``random`` states what to make.
 
     file : in_gm.dat with its folder;  lines : of each body the line that it begins on, from 1, then those of its
-    elements;  none of bodies that stand in no file.
+    elements, or of mode 0 those of its radii, material and void ratio;  none of bodies that stand in no file.
     """
 
     dt: float
@@ -148,10 +148,11 @@ def _grains(file: Reader) -> Deck:
     file.must(x2 > x1, "x2", x2, f"> x1 = {x1:g}")
     file.must(y2 > y1, "y2", y2, f"> y1 = {y1:g}")
     file.must(thick >= 0.0, "thick", thick, ">= 0")
-    random = _random(file, len(stuff), (x1, x2, y1, y2)) if mode == 0 else None
-    bodies: tuple[Body, ...] = ()
-    lines: tuple[tuple[int, ...], ...] = ()
-    if random is None:
+    random, bodies, lines = None, tuple[Body, ...](), tuple[tuple[int, ...], ...]()
+    if mode == 0:
+        random, own = _random(file, len(stuff), (x1, x2, y1, y2))
+        lines = (own,)
+    else:
         ncir, nseg1, nseg2 = file.record(("ncir", int), ("nseg1", int), ("nseg2", int))
         for name, value in (("ncir", ncir), ("nseg1", nseg1), ("nseg2", nseg2)):
             file.must(0 <= value <= MOST_BODIES, name, value, "0 or more")
@@ -161,7 +162,7 @@ def _grains(file: Reader) -> Deck:
         first = (int(ncir), int(ncir + nseg1), int(ncir + nseg1 + nseg2))
         domain = (x1, x2, y1, y2)
         read = [_body(file, k + 1, k < first[0], k >= first[1], len(stuff), domain) for k in range(first[2])]
-        bodies, lines = tuple(body for body, _ in read), tuple(own for _, own in read)
+        bodies, lines = tuple(body for body, _ in read), tuple(places for _, places in read)
     file.done()
     return Deck(
         dt, (gx, gy), stuff, (x1, x2, y1, y2), thick, bodies, random, NEW, 0, 1, 1, 1, file=file.path, lines=lines
@@ -181,19 +182,23 @@ def _stuff(file: Reader) -> Stuff:
     return Stuff(*values)
 
 
-def _random(file: Reader, stuff: int, domain: Four) -> Random:
+def _random(file: Reader, stuff: int, domain: Four) -> tuple[Random, tuple[int, ...]]:
+    """What to make in mode 0, and the lines of radii, material and void ratio."""
     r1, r2 = file.record(("r1", float), ("r2", float))
+    lines = [file.begun]
     file.must(r1 > 0.0, "r1", r1, "> 0")
     file.must(r2 >= r1, "r2", r2, f">= r1 = {r1:g}")
     (material,) = file.record(("material", int))
+    lines.append(file.begun)
     file.must(1 <= material <= stuff, "material", material, f"1 to {stuff}")
     (void,) = file.record(("void ratio", float))
+    lines.append(file.begun)
     file.must(void > 0.0, "void ratio", void, "> 0")
     made = Random(r1, r2, int(material), void)
     if not file.faults:
         fits = made.count(domain) <= MOST_BODIES
         file.must(fits, "void ratio", void, f"a larger one, or larger discs: it makes more than {MOST_BODIES} of them")
-    return made
+    return made, tuple(lines)
 
 
 def _body(

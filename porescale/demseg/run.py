@@ -11,6 +11,7 @@ At the end: new_in_gm.dat, new_in_bc.dat (jclid 1), new_in_cf.dat (see state.py)
 for the next run, without new_.
 """
 
+import re
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -89,13 +90,24 @@ class DeckRun:
                 if count:
                     self.grains.step(self.step_seconds, self._weight, count=count)
                     self.step += count
+        except Unstable as e:  # grains count from 0 and have units, decks do not
+            where = re.sub(r"^grain (\d+)$", lambda found: f"point {int(found[1]) + 1}", e.where)
+            raise Unstable(where, e.quantity, e.value, "", e.step, e.time, e.cause) from None
         finally:
             self.time = self.step * self.step_seconds
+
+    def doubts(self) -> list[str]:
+        """What is doubtful of the deck and goes on all the same, one line each."""
+        limit = self.grains.stable_step(safety=1.0, steps_per_contact=0.0)
+        if self.step_seconds <= limit:
+            return []
+        text = f"dt = {self.step_seconds:g} is beyond {limit:.3g}, up to which bodies in any contacts are stable"
+        return [f"{self.deck.file}: {text}: energies may grow without bound, see err in energy.dat"]
 
     def check(self) -> None:
         """Raise Unstable when a point is nowhere, or outside of the domain by more than the domain is long.
 
-        Nothing else stops a deck: what steps that are too long do to its energies, ``err`` shows.
+        Nothing else stops a deck: what steps that are too long do to its energies, ``err`` shows, see doubts.
         """
         x1, x2, y1, y2 = self.deck.domain
         at = self.grains.discs.position
