@@ -59,7 +59,7 @@ def forces_of_pairs(cloud: Cloud) -> tuple[Floats, Floats]:
     _, first, same = np.unique(key, axis=0, return_index=True, return_inverse=True)
     net, all_of_it = (np.bincount(same.reshape(-1), values, len(first)) for values in (force, np.abs(force)))
     net = np.where(np.abs(net) > NOISE * all_of_it, net, 0.0)
-    return net, np.stack((start, start + np.asarray(cloud["branch"], float)[:, :2]), axis=1)[first]
+    return net.astype(float), np.stack((start, start + np.asarray(cloud["branch"], float)[:, :2]), axis=1)[first]
 
 
 def body_numbers(shot: Snapshot, view: View) -> Figure:
