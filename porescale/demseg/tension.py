@@ -77,7 +77,7 @@ def read_tensions(path: Path, built: Built) -> list[Row]:
             file.must(1 <= two <= known and one != two, "other", two, f"1 to {known}, not {one:g} itself")
             file.must(pair[0] <= points, "other", two, f"1 to {points}: segments are bonded to points")
             file.must(found.setdefault(pair, value) == value, "tension", value, f"{found[pair]:g}, as before")
-            if pair[0] >= 1 and pair[1] <= known and one != two:
+            if pair not in from_ and pair[0] >= 1 and pair[1] <= known and one != two:
                 same = int(body[pair[0] - 1])
                 file.must(
                     same != body[pair[1] - 1], "other", two, f"a point of another body: {one:g} is of body {same}"
@@ -93,8 +93,9 @@ def read_tensions(path: Path, built: Built) -> list[Row]:
             file.must(int(one) not in sides, "other", two, f"each once for {one:g}")
             sides.add(int(one))
     if len(positive) > 1:
-        first = file.faults[positive[0]]
-        file.faults[positive[0]] = replace(first, problem=f"{first.problem}; so are {len(positive) - 1} rows more")
+        first, more = file.faults[positive[0]], len(positive) - 1
+        also = "so is 1 more row" if more == 1 else f"so are {more} more rows"
+        file.faults[positive[0]] = replace(first, problem=f"{first.problem}; {also}")
     file.done()
     if not found:
         repair = "write jclid 0 in in_bc.dat to run without bonds"

@@ -276,7 +276,7 @@ def test_positive_bonds_of_discs_are_one_line_with_their_number(tmp_path):
         read_tensions(tmp_path / "b" / "in_cf0.dat", model.built)
     assert len(caught.value.faults) == 1
     assert "line 2, tension" in str(caught.value)
-    assert str(caught.value).endswith("a bond cancels a contact that presses; so are 37 rows more")  # 38 in all
+    assert str(caught.value).endswith("a bond cancels a contact that presses; so are 37 more rows")  # 38 in all
 
 
 @pytest.mark.parametrize(
@@ -300,6 +300,7 @@ def test_bonds_of_corners_are_between_bodies_and_positive_where_corners_count_on
     with pytest.raises(InputError) as caught:
         read_tensions(tmp_path / "in_cf0.dat", model.built)
     assert said in str(caught.value)
+    assert len(caught.value.faults) == 1
 
 
 def test_a_step_beyond_the_stable_one_is_doubted_before_it_is_done(tmp_path, capsys):
