@@ -51,6 +51,7 @@ def run(
     quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
 ) -> int:
     """Run a deck: run folder, the files of DEMseg, and new_in_*.dat for the run that goes on from its end."""
+    from porescale.common.api.run import warn
     from porescale.common.record.drive import check_resume
     from porescale.demseg.build import Options
     from porescale.demseg.deck import read_deck
@@ -71,6 +72,7 @@ def run(
         check_resume(where, {"package": PACKAGE, "name": name, "scene": scene})
     use_threads(threads)
     model = DeckRun(deck, options, folder)
+    warn(model.doubts())
     outcome = drive_deck(model, where, name, scene, resume=resume, overwrite=overwrite, quiet=quiet)
     if not quiet:
         print(summary("porescale", name, where, outcome).rsplit("\n", 1)[0])
@@ -190,11 +192,12 @@ def volonoi(
     seed: Seed = 0,
     overwrite: Annotated[bool, Parameter(help="replace the files")] = False,
 ) -> int:
-    """Make polygons of a deck's discs, thick apart: in_gm_tri.dat (Delaunay) and in_gm_volo.dat (Voronoi)."""
+    """Make polygons of the discs of in_gm.dat, thick apart: in_gm_tri.dat (Delaunay) and in_gm_volo.dat (Voronoi)."""
     from porescale.common.cli.folders import require_writable
     from porescale.common.core.atomic import write_text
     from porescale.demseg.build import with_bodies
-    from porescale.demseg.deck import grains_text, read_deck
+    from porescale.demseg.check import check_bodies
+    from porescale.demseg.deck import grains_text, read_grains
     from porescale.demseg.divide import FILES, divided
 
     place = out or Path()
@@ -202,7 +205,9 @@ def volonoi(
     there = [place / name for name in FILES.values() if (place / name).exists()]
     if there and not overwrite:
         raise InputError(Fault("--out", str(there[0]), "is there already", repair="name another, or --overwrite it"))
-    deck = with_bodies(read_deck(_deck_folder(folder)), seed)
+    given = read_grains(_deck_folder(folder))
+    check_bodies(given)
+    deck = with_bodies(given, seed)
     made = {kind: divided(deck, kind, pressed) for kind in FILES}
     place.mkdir(parents=True, exist_ok=True)
     for kind, each in made.items():

@@ -36,6 +36,9 @@ from porescale.demseg.packing import even_start
 from porescale.demseg.sides import at_sides
 
 ROD = 0.1
+FEW, TRIES = 100, 8
+"""Discs of mode 0 that are so few may jam by chance, as one side holds only two or three: they are drawn again, at most
+so often in all."""
 
 
 @dataclass(frozen=True)
@@ -65,24 +68,49 @@ class Built:
 
 def with_bodies(deck: Deck, seed: int) -> Deck:
     """The deck with the discs that mode 0 makes, in place of what it holds of them."""
-    return deck if deck.random is None else replace(deck, bodies=random_discs(deck, deck.random, seed), random=None)
+    if deck.random is None:
+        return deck
+    return replace(deck, bodies=random_discs(deck, deck.random, seed), random=None, lines=())
 
 
 def random_discs(deck: Deck, random: Random, seed: int) -> tuple[Body, ...]:
     """Discs of mode 0, see module.  Raises InputError where they do not fit."""
     x1, x2, y1, y2 = deck.domain
     small, large, count = random.smallest, random.largest, random.count(deck.domain)
+    lines = deck.lines[0] if deck.lines else ()
     if count < 1:
-        raise InputError(Fault("void ratio", random.void_ratio, "leaves no room for a disc", file="in_gm.dat"))
+        raise _unfit(
+            deck, lines[2:], "void ratio", random.void_ratio, "leaves no room for a disc", "give a smaller one"
+        )
     rng = np.random.default_rng(seed)
     radius = small + (large - small) * (np.arange(count) + 0.5) / count
-    start, radius = even_start(radius, (x2 - x1, y2 - y1), rng)
-    try:
-        where = place((x1, y1), (x2, y2), radii=radius, start=start).position
-    except InputError as error:
-        raise error.in_file("in_gm.dat (mode 0)") from None
-    rows = zip(radius.tolist(), where.tolist(), strict=True)
-    return tuple(Body(random.material, (0.0, 0.0, 0.0), discs=((r, x, y, 0.0),)) for r, (x, y) in rows)
+    widest, side = 2.0 * float(radius.max()), min(x2 - x1, y2 - y1)
+    if widest > side:
+        problem = f"makes a disc {widest:g} across in a domain of {side:g}"
+        raise _unfit(deck, lines[:1], "r2", large, problem, "give smaller discs or a larger domain")
+    for _ in range(TRIES if count <= FEW else 1):
+        start, own = even_start(radius, (x2 - x1, y2 - y1), rng)
+        try:
+            where = place((x1, y1), (x2, y2), radii=own, start=start).position
+        except InputError:
+            continue
+        rows = zip(own.tolist(), where.tolist(), strict=True)
+        return tuple(Body(random.material, (0.0, 0.0, 0.0), discs=((r, x, y, 0.0),)) for r, (x, y) in rows)
+    share = math.pi * float(radius @ radius) / ((x2 - x1) * (y2 - y1))
+    problem = f"{count} discs would fill {share:.2f} of the domain, which is too dense for them to lie without overlap"
+    repair = "give a larger void ratio, smaller discs, a larger domain or another --seed"
+    raise _unfit(deck, lines[2:], "void ratio", random.void_ratio, problem, repair)
+
+
+def _unfit(deck: Deck, line: tuple[int, ...], name: str, value: float, problem: str, repair: str) -> InputError:
+    """What is said of discs of mode 0 that do not fit, by the ``line`` of what the deck has of them, where it has."""
+    where = f"line {line[0]}, {name}" if line else name
+    return InputError(Fault(where, value, problem, repair=repair, file=str(deck.file)))
+
+
+def width_of(deck: Deck, options: Options) -> float:
+    """Width of segments that weigh, see module."""
+    return options.rod if options.rod is not None else 2.0 * deck.thick or ROD
 
 
 def laws(deck: Deck, release: str) -> Linear | Materials:
@@ -153,15 +181,22 @@ def _grains(
 
 
 def _frame(deck: Deck, number: int, options: Options) -> Frame:
-    body = deck.bodies[number]
-    width = options.rod if options.rod is not None else 2.0 * deck.thick or ROD
+    body, width = deck.bodies[number], width_of(deck, options)
     try:
         return from_ends(
             np.array(body.segments).reshape(-1, 2, 2), deck.thick, deck.stuff[body.material - 1].density, width=width,
             velocity=body.velocity[:2], spin=body.velocity[2], long=body.long, material=body.material - 1,
         )  # fmt: skip
     except InputError as error:
-        raise error.in_file(f"in_gm.dat, body {number + 1}") from None
+        raise InputError([_of_body(deck, number, fault) for fault in error.faults]) from None
+
+
+def _of_body(deck: Deck, number: int, fault: Fault) -> Fault:
+    """A fault of a frame as one of its body, with the numbers of its segments from 1."""
+    if isinstance(fault.value, tuple) and fault.value and isinstance(fault.value[0], int):
+        one, other = (value + 1 for value in fault.value)
+        return deck.fault(number, f"crosses itself: elements {one} and {other}", "give the outline in its order")
+    return deck.fault(number, fault.problem, fault.repair)
 
 
 def _heading(body: Body) -> float:

@@ -22,9 +22,10 @@ jclid 0: a new start;  1: goes on from in_cf.dat, see state.py;  3: bonded by in
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from porescale.common.core.errors import Fault
 from porescale.demseg.numbers import Reader, table
 
 GM, BC, CF, CF0 = "in_gm.dat", "in_bc.dat", "in_cf.dat", "in_cf0.dat"
@@ -91,7 +92,11 @@ class Control:
 
 @dataclass(frozen=True)
 class Deck:
-    """A deck; names as in the module's layout.  bodies: none in mode 0, where ``random`` states what to make."""
+    """A deck; names as in the module's layout.  bodies: none in mode 0, where ``random`` states what to make.
+
+    file : in_gm.dat with its folder;  lines : of each body the line that it begins on, from 1, then those of its
+    elements, or of mode 0 those of its radii, material and void ratio;  none of bodies that stand in no file.
+    """
 
     dt: float
     gravity: tuple[float, float]
@@ -107,12 +112,26 @@ class Deck:
     nprn2: int
     recorded: tuple[int, ...] = ()
     controls: tuple[Control, ...] = ()
+    file: Path = field(default=Path(GM), compare=False)
+    lines: tuple[tuple[int, ...], ...] = field(default=(), compare=False)
+
+    def fault(self, body: int, problem: str, repair: str = "", element: int | None = None) -> Fault:
+        """A fault of a body, or of its ``element`` (both from 0), that names file and line, and numbers from 1."""
+        key = f"body {body + 1}" + ("" if element is None else f", element {element + 1}")
+        if self.lines:
+            key = f"line {self.lines[body][0 if element is None else 1 + element]}, {key}"
+        return Fault(key, None, problem, repair=repair, file=str(self.file))
 
 
 def read_deck(folder: Path) -> Deck:
     """The deck in ``folder``; InputError naming file, line, field and what was expected, one line a fault."""
-    deck = _grains(Reader(folder / GM))
+    deck = read_grains(folder)
     return _boundary(Reader(folder / BC), deck)
+
+
+def read_grains(folder: Path) -> Deck:
+    """What in_gm.dat in ``folder`` has of a deck, the rest as for one step; InputError as of read_deck."""
+    return _grains(Reader(folder / GM))
 
 
 def _grains(file: Reader) -> Deck:
@@ -129,9 +148,11 @@ def _grains(file: Reader) -> Deck:
     file.must(x2 > x1, "x2", x2, f"> x1 = {x1:g}")
     file.must(y2 > y1, "y2", y2, f"> y1 = {y1:g}")
     file.must(thick >= 0.0, "thick", thick, ">= 0")
-    random = _random(file, len(stuff), (x1, x2, y1, y2)) if mode == 0 else None
-    bodies: tuple[Body, ...] = ()
-    if random is None:
+    random, bodies, lines = None, tuple[Body, ...](), tuple[tuple[int, ...], ...]()
+    if mode == 0:
+        random, own = _random(file, len(stuff), (x1, x2, y1, y2))
+        lines = (own,)
+    else:
         ncir, nseg1, nseg2 = file.record(("ncir", int), ("nseg1", int), ("nseg2", int))
         for name, value in (("ncir", ncir), ("nseg1", nseg1), ("nseg2", nseg2)):
             file.must(0 <= value <= MOST_BODIES, name, value, "0 or more")
@@ -140,9 +161,12 @@ def _grains(file: Reader) -> Deck:
             file.done()
         first = (int(ncir), int(ncir + nseg1), int(ncir + nseg1 + nseg2))
         domain = (x1, x2, y1, y2)
-        bodies = tuple(_body(file, k + 1, k < first[0], k >= first[1], len(stuff), domain) for k in range(first[2]))
+        read = [_body(file, k + 1, k < first[0], k >= first[1], len(stuff), domain) for k in range(first[2])]
+        bodies, lines = tuple(body for body, _ in read), tuple(places for _, places in read)
     file.done()
-    return Deck(dt, (gx, gy), stuff, (x1, x2, y1, y2), thick, bodies, random, NEW, 0, 1, 1, 1)
+    return Deck(
+        dt, (gx, gy), stuff, (x1, x2, y1, y2), thick, bodies, random, NEW, 0, 1, 1, 1, file=file.path, lines=lines
+    )  # fmt: skip
 
 
 def _stuff(file: Reader) -> Stuff:
@@ -158,23 +182,31 @@ def _stuff(file: Reader) -> Stuff:
     return Stuff(*values)
 
 
-def _random(file: Reader, stuff: int, domain: Four) -> Random:
+def _random(file: Reader, stuff: int, domain: Four) -> tuple[Random, tuple[int, ...]]:
+    """What to make in mode 0, and the lines of radii, material and void ratio."""
     r1, r2 = file.record(("r1", float), ("r2", float))
+    lines = [file.begun]
     file.must(r1 > 0.0, "r1", r1, "> 0")
     file.must(r2 >= r1, "r2", r2, f">= r1 = {r1:g}")
     (material,) = file.record(("material", int))
+    lines.append(file.begun)
     file.must(1 <= material <= stuff, "material", material, f"1 to {stuff}")
     (void,) = file.record(("void ratio", float))
+    lines.append(file.begun)
     file.must(void > 0.0, "void ratio", void, "> 0")
     made = Random(r1, r2, int(material), void)
     if not file.faults:
         fits = made.count(domain) <= MOST_BODIES
         file.must(fits, "void ratio", void, f"a larger one, or larger discs: it makes more than {MOST_BODIES} of them")
-    return made
+    return made, tuple(lines)
 
 
-def _body(file: Reader, number: int, of_discs: bool, long: bool, stuff: int, domain: Four) -> Body:
+def _body(
+    file: Reader, number: int, of_discs: bool, long: bool, stuff: int, domain: Four
+) -> tuple[Body, tuple[int, ...]]:
+    """The next body, and the line that it begins on, then those of its elements."""
     ic, material, count = file.record(("ic", int), ("imat", int), ("nelm", int))
+    lines = [file.begun]
     file.must(ic == number, "ic", ic, f"{number}: bodies are numbered from 1, discs before segments")
     file.must(1 <= material <= stuff, "imat", material, f"1 to {stuff}")
     file.must(count >= 1, "nelm", count, "1 or more")
@@ -183,24 +215,26 @@ def _body(file: Reader, number: int, of_discs: bool, long: bool, stuff: int, dom
     elements = []
     for k in range(int(count)):
         ielm, a, b, c, d = file.record(("ielm", int), *((name, float) for name in names), rows=2)
+        lines.append(file.begun)
         file.must(ielm == k + 1, "ielm", ielm, f"{k + 1}: elements of a body are numbered from 1")
         if of_discs:
             file.must(a > 0.0, "rad", a, "> 0")
-            _inside(file, domain, {"xc": b, "yc": c}, "its sides would throw the disc")
+            _inside(file, domain, {"xc": b, "yc": c})
         else:
             file.must((a, b) != (c, d), "x2", c, "an end other than the first")
-            if not long:
-                _inside(file, domain, {"x1": a, "y1": b, "x2": c, "y2": d}, "its sides would throw the segment")
         elements.append((a, b, c, d))
     own = tuple(elements)
-    return Body(int(material), (vx, vy, vw), own if of_discs else (), () if of_discs else own, long)
+    body = Body(int(material), (vx, vy, vw), own if of_discs else (), () if of_discs else own, long)
+    return body, tuple(lines)
 
 
-def _inside(file: Reader, domain: Four, place: dict[str, float], why: str) -> None:
-    """Note a fault of each coordinate that lies outside of the domain: all that is behind a side is solid."""
-    for name, value in place.items():
+def _inside(file: Reader, domain: Four, centre: dict[str, float]) -> None:
+    """Note a fault of each coordinate of a disc's centre that does not lie within the domain: all that is behind a side
+    is solid, and a centre on it is pressed in by the whole radius."""
+    for name, value in centre.items():
         low, high = domain[:2] if name[0] == "x" else domain[2:]
-        file.must(low <= value <= high or low >= high, name, value, f"{low:g} to {high:g}, inside the domain: {why}")
+        why = f"between {low:g} and {high:g}, inside the domain: its sides would throw the disc"
+        file.must(low < value < high or low >= high, name, value, why)
 
 
 def _boundary(file: Reader, deck: Deck) -> Deck:
@@ -213,7 +247,7 @@ def _boundary(file: Reader, deck: Deck) -> Deck:
     (npfd,) = file.record(("npfd", int))
     file.must(0 <= npfd <= most, "npfd", npfd, f"0 to {most}")
     watched = [f"recorded body {k + 1}" for k in range(int(npfd) if npfd <= most else 0)]
-    recorded = [int(n) for n in file.record(*((name, int) for name in watched))] if watched else []
+    recorded = [int(n) for n in file.record(*((name, int) for name in watched), rows=None)] if watched else []
     for name, n in zip(watched, recorded, strict=True):
         file.must(1 <= n <= most, name, n, f"1 to {most}")
     (npbd,) = file.record(("npbd", int))

@@ -14,7 +14,7 @@ import numpy as np
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
-from porescale.demseg.deck import GM, Body, Deck
+from porescale.demseg.deck import Body, Deck
 
 FILES = {"triangles": "in_gm_tri.dat", "cells": "in_gm_volo.dat"}
 REST = (0.0, 0.0, 0.0)
@@ -29,9 +29,11 @@ def divided(deck: Deck, kind: str, pressed: float = 0.0) -> Deck:
     odd = [k for k, body in enumerate(deck.bodies) if len(body.discs) != 1]
     if odd:
         problem = "is no single disc, whose centre could be a seed"
-        raise InputError(Fault(f"body {odd[0] + 1}", None, problem, repair="leave out clumps and segments", file=GM))
+        raise InputError(deck.fault(odd[0], problem, "leave out clumps and segments"))
     if not deck.thick > 0.0:
-        raise InputError(Fault("thick", deck.thick, "is the distance between polygons", allowed="> 0", file=GM))
+        raise InputError(
+            Fault("thick", deck.thick, "is the distance between polygons", allowed="> 0", file=str(deck.file))
+        )
     if not 0.0 <= pressed < deck.thick:
         raise InputError(Fault("--pressed", pressed, "is out of range", allowed=f"0 to thick = {deck.thick:g}"))
     at = np.array([body.discs[0][1:3] for body in deck.bodies])
@@ -39,12 +41,12 @@ def divided(deck: Deck, kind: str, pressed: float = 0.0) -> Deck:
     try:
         parts = (delaunay if kind == "triangles" else voronoi)(at, (x1, y1), (x2, y2))
     except InputError as error:
-        raise error.in_file(f"{GM}, centres of discs") from None
+        raise error.in_file(f"{deck.file}, centres of discs") from None
     inner = [shrunk(part, 0.5 * deck.thick, shortest=deck.thick) for part in parts]
     bodies = tuple(Body(_material(deck, at, it), REST, segments=_sides(it)) for it in inner if it is not None)
     if not bodies:
-        raise InputError(Fault("thick", deck.thick, "leaves nothing of any polygon", file=GM))
-    return replace(deck, bodies=bodies, random=None, thick=0.5 * (deck.thick + pressed))
+        raise InputError(Fault("thick", deck.thick, "leaves nothing of any polygon", file=str(deck.file)))
+    return replace(deck, bodies=bodies, lines=(), random=None, thick=0.5 * (deck.thick + pressed))
 
 
 def _material(deck: Deck, at: Floats, corners: Floats) -> int:

@@ -8,6 +8,7 @@ value are passed over, as are a byte-order mark and the control character that e
 import math
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from porescale.common.core.errors import Fault, InputError
@@ -37,7 +38,7 @@ class Reader:
         self.path = path
         self.line = 0  # of the last record, counted from 1
         self.faults: list[Fault] = []
-        self._over = ""  # of the last record, where it took more lines than it is written on
+        self._over: tuple[str, str] | None = None  # the first record that took more lines than usual: where, and what
         self._lines_of: dict[str, int] = {}  # of the values of the last record
         try:
             given = given_bytes(path)
@@ -46,16 +47,18 @@ class Reader:
         encoding = next((name for mark, name in MARKS if given.startswith(mark)), "utf-8")
         self._lines = given.decode(encoding, errors="replace").rstrip("\x1a").splitlines()
 
-    def record(self, *fields: Field, rows: int = 1) -> list[float]:
+    def record(self, *fields: Field, rows: int | None = 1) -> list[float]:
         """The values of the next record, one a field; whole ones where the field's type is int.
 
-        rows : lines that it is commonly written on; what is said of later faults names a record that took more.
+        rows : lines that it is commonly written on, None: one, or one for each value.  Every later fault begins with
+        the first record that took more, as a line with too few values lets all later ones be read as what they are not.
         """
         values: list[float] = []
         self._lines_of = {}
         words: list[str] = []
         shared: list[tuple[int, int]] = []  # line, and how many of the record's values it has
         while len(values) < len(fields):
+            self._note_over(fields, shared, rows)
             words, before = self._next_words(fields[len(values)][0], fields, shared), len(values)
             while words and len(values) < len(fields):
                 if len(values) > before and not BEGUN.match(words[0]):
@@ -66,31 +69,33 @@ class Reader:
                 self._lines_of.setdefault(name, self.line)
             shared.append((self.line, len(values) - before))
         if len(values) > len(fields) or (words and _number(words[0])):
-            if len(shared) > 1:
-                raise self._short(fields, shared)
             more = words[0] if len(values) == len(fields) else f"{values[-1]:g}"
             raise self._broken(
                 f"after {fields[-1][0]}", more, "one value too many", "the end of the line, or a comment"
             )
-        line, count = shared[0]
-        names = ", ".join(name for name, _ in fields)
-        long = len(shared) > rows
-        self._over = f"; line {line} has {count} of the {len(fields)} values {names}" if long else ""
         return values
 
-    def _short(self, fields: Sequence[Field], shared: Sequence[tuple[int, int]]) -> InputError:
-        """What is said where lines do not make up a record: the first of them has too few values."""
-        line, count = shared[0]
-        names = ", ".join(name for name, _ in fields)
-        problem = f"the record that begins here does not end with line {self.line}"
-        self._lines_of = {fields[0][0]: line}
-        return self._broken(fields[0][0], f"{count} values", problem, f"{len(fields)} values: {names}")
+    def _note_over(self, fields: Sequence[Field], shared: Sequence[tuple[int, int]], rows: int | None) -> None:
+        """Keep what is said of a record that is not whole after its usual lines, if it is the first; see record."""
+        if rows is None:
+            rows = len(fields) if all(count == 1 for _, count in shared) else 1
+        if self._over is not None or len(shared) < rows:
+            return
+        lines = " and ".join(str(line) for line, _ in shared[:rows])
+        where, has = (f"line {lines}", "has") if rows == 1 else (f"lines {lines}", "have")
+        count, names = sum(count for _, count in shared[:rows]), ", ".join(name for name, _ in fields)
+        self._over = where, f"{has} {count} of the {len(fields)} values {names}"
 
     def must(self, fine: bool, name: str, value: float, expected: str) -> None:
         """Note a fault of the field ``name`` of the last record unless it is ``fine``."""
         if not fine:
             shown = int(value) if float(value).is_integer() else value
             self.faults.append(self._fault(name, shown, "makes no sense", expected))
+
+    @property
+    def begun(self) -> int:
+        """Line that the last record begins on, from 1."""
+        return min(self._lines_of.values(), default=self.line)
 
     def more(self) -> bool:
         """Whether another record follows."""
@@ -136,11 +141,15 @@ class Reader:
         return [value] * times
 
     def _broken(self, name: str, value: str | None, problem: str, expected: str) -> InputError:
-        return InputError([*self.faults, self._fault(name, value, problem, expected + self._over)])
+        return InputError([*self.faults, self._fault(name, value, problem, expected)])
 
     def _fault(self, name: str, value: object, problem: str, expected: str) -> Fault:
         line = self._lines_of.get(name, max(self.line, 1))
-        return Fault(f"line {line}, {name}", value, f"{problem}, expected {expected}", file=str(self.path))
+        found = Fault(f"line {line}, {name}", value, f"{problem}, expected {expected}")
+        if self._over is not None:
+            where, what = self._over
+            found = Fault(where, None, f"{what}; then {found.line()}")
+        return replace(found, file=str(self.path))
 
 
 def _words(line: str) -> list[str]:

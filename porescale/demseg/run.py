@@ -11,6 +11,7 @@ At the end: new_in_gm.dat, new_in_bc.dat (jclid 1), new_in_cf.dat (see state.py)
 for the next run, without new_.
 """
 
+import re
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -27,8 +28,10 @@ from porescale.dem.bodies.frames import cells_of
 from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import LOSSES, WORKS, energy_budget
 from porescale.demseg.build import Options, bodies_now, bonded, build, posture, with_bodies
+from porescale.demseg.check import check_bodies
 from porescale.demseg.deck import BC, BONDED, CF, CF0, GM, GO_ON, Body, Deck, boundary_text, grains_text, read_deck
 from porescale.demseg.numbers import plain
+from porescale.demseg.options import kept_options, require_kept
 from porescale.demseg.outputs import CONTACTS, bodies_of, contact_cloud, write_breaks, write_emissions, write_places
 from porescale.demseg.state import read_state, state_text
 from porescale.demseg.tension import read_tensions, tension_text
@@ -48,8 +51,12 @@ class DeckRun:
 
     def __init__(self, deck: Deck, options: Options, folder: Path) -> None:
         """``folder`` holds in_cf.dat or in_cf0.dat where the deck needs one; else see read."""
-        self.deck = with_bodies(deck, options.seed)
+        self.deck, self.options = with_bodies(deck, options.seed), options
         before = read_state(folder / CF) if deck.jclid == GO_ON else None
+        if before is not None:
+            require_kept(before, self.deck, options, folder / CF)
+        if before is None and deck.random is None:
+            check_bodies(deck)
         self._start = self.deck.bodies if before is None else _started(self.deck, before, folder / CF)
         self.built = build(replace(self.deck, bodies=self._start), options)
         self.grains = self.built.grains
@@ -83,13 +90,24 @@ class DeckRun:
                 if count:
                     self.grains.step(self.step_seconds, self._weight, count=count)
                     self.step += count
+        except Unstable as e:  # grains count from 0 and have units, decks do not
+            where = re.sub(r"^grain (\d+)$", lambda found: f"point {int(found[1]) + 1}", e.where)
+            raise Unstable(where, e.quantity, e.value, "", e.step, e.time, e.cause) from None
         finally:
             self.time = self.step * self.step_seconds
+
+    def doubts(self) -> list[str]:
+        """What is doubtful of the deck and goes on all the same, one line each."""
+        limit = self.grains.stable_step(safety=1.0, steps_per_contact=0.0)
+        if self.step_seconds <= limit:
+            return []
+        text = f"dt = {self.step_seconds:g} is beyond {limit:.3g}, up to which bodies in any contacts are stable"
+        return [f"{self.deck.file}: {text}: energies may grow without bound, see err in energy.dat"]
 
     def check(self) -> None:
         """Raise Unstable when a point is nowhere, or outside of the domain by more than the domain is long.
 
-        Nothing else stops a deck: what steps that are too long do to its energies, ``err`` shows.
+        Nothing else stops a deck: what steps that are too long do to its energies, ``err`` shows, see doubts.
         """
         x1, x2, y1, y2 = self.deck.domain
         at = self.grains.discs.position
@@ -190,7 +208,12 @@ class DeckRun:
         after = replace(
             self.deck, bodies=bodies_now(self.deck, self.built), jclid=GO_ON, iloop=self.deck.iloop + self.step
         )  # fmt: skip
-        kept = {"start": _numbers(self._start), "heading": self.built.heading, "grains": self.grains.state()}
+        kept = {
+            "start": _numbers(self._start),
+            "options": kept_options(self.deck, self.options),
+            "heading": self.built.heading,
+            "grains": self.grains.state(),
+        }
         write_text(folder / f"new_{GM}", grains_text(after))
         write_text(folder / f"new_{BC}", boundary_text(after))
         write_text(folder / f"new_{CF}", state_text(kept))
@@ -204,7 +227,8 @@ def read(folder: Path, options: Options) -> DeckRun:
 
 def card_of(deck: Deck, options: Options) -> dict[str, Any]:
     """The deck and what was chosen beside it, as the run's card keeps them."""
-    return {"deck": asdict(deck), "options": asdict(options)}
+    kept = {name: value for name, value in asdict(deck).items() if name not in ("file", "lines")}  # where it stands
+    return {"deck": kept, "options": asdict(options)}
 
 
 def _numbers(bodies: tuple[Body, ...]) -> list[tuple[float, ...]]:

@@ -4,21 +4,26 @@ For each point that has some, a line with its number and how many, then as many 
 the tension, the force of the contact with its sign turned.  Points are the discs, in the order of in_gm.dat, then the
 ends of segments, those that coincide once; a number beyond the points is a segment.  Each bond stands there twice.
 With discs only that is the layout of the DEMseg tutorial, which gives none for segments.  The numbers are negative: a
-bond cancels a contact that presses.  Only corners of segments may have positive ones, those of rule "outline" that
-count less than once (segments.py).
+bond cancels a contact that presses.  Only corners of segments may have positive ones, and with rule "outline" alone,
+those that count less than once (segments.py).  Bonds are between bodies, and between discs that touch.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.bodies.bonding import bond
 from porescale.demseg.build import Built
 from porescale.demseg.deck import MOST_BODIES
 from porescale.demseg.numbers import Reader, real
+from porescale.demseg.outputs import bodies_of
 
 Row = tuple[int, int, int, float]
+APART = 0.1
+"""Most that two bonded discs may stand apart, over the smaller radius: a bond that breaks in the next step may."""
 
 
 def tensions(built: Built) -> list[Row]:
@@ -58,6 +63,8 @@ def read_tensions(path: Path, built: Built) -> list[Row]:
     segments = 0 if built.grains.segments is None else len(built.grains.segments.ends)
     known, file = points + segments, Reader(path)
     corners = points if built.grains.segments is None else int(built.grains.segments.is_corner.argmax())
+    outlined = built.grains.segments is not None and built.grains.segments.rule == "outline"
+    body, positive = _bodies(built), list[int]()  # of the latter: places among the faults, one for each row
     found: dict[tuple[int, int], float] = {}
     from_: dict[tuple[int, int], set[int]] = {}
     while file.more():
@@ -70,12 +77,29 @@ def read_tensions(path: Path, built: Built) -> list[Row]:
             file.must(1 <= two <= known and one != two, "other", two, f"1 to {known}, not {one:g} itself")
             file.must(pair[0] <= points, "other", two, f"1 to {points}: segments are bonded to points")
             file.must(found.setdefault(pair, value) == value, "tension", value, f"{found[pair]:g}, as before")
-            beyond = corners < pair[1] <= points  # a corner, but no segment
-            file.must(value < 0.0 or beyond, "tension", value, "< 0, as a bond cancels a contact that presses")
+            if pair not in from_ and pair[0] >= 1 and pair[1] <= known and one != two:
+                same = int(body[pair[0] - 1])
+                file.must(
+                    same != body[pair[1] - 1], "other", two, f"a point of another body: {one:g} is of body {same}"
+                )
+                if pair[1] <= corners and (gap := _gap(built, pair[0] - 1, pair[1] - 1)) > 0.0:
+                    file.must(False, "other", two, f"a disc that touches {one:g}: they stand {gap:.3g} apart")
+            beyond = outlined and corners < pair[1] <= points  # a corner, but no segment
+            if not (value < 0.0 or beyond):
+                positive.append(len(file.faults))
+                if len(positive) == 1:
+                    file.must(False, "tension", value, "< 0, as a bond cancels a contact that presses")
             sides = from_.setdefault(pair, set())
             file.must(int(one) not in sides, "other", two, f"each once for {one:g}")
             sides.add(int(one))
+    if len(positive) > 1:
+        first, more = file.faults[positive[0]], len(positive) - 1
+        also = "so is 1 more row" if more == 1 else f"so are {more} more rows"
+        file.faults[positive[0]] = replace(first, problem=f"{first.problem}; {also}")
     file.done()
+    if not found:
+        repair = "write jclid 0 in in_bc.dat to run without bonds"
+        raise InputError(Fault("bonds", 0, "there are none, and jclid 3 needs some", repair=repair, file=str(path)))
     halves = [(pair, min(sides)) for pair, sides in sorted(from_.items()) if len(sides) == 1]
     if halves:
         (one, two), named = halves[0]
@@ -88,3 +112,16 @@ def read_tensions(path: Path, built: Built) -> list[Row]:
         sided = int(two > points)
         rows.append((one - 1, two - 1 - points * sided, sided, -value))
     return rows
+
+
+def _bodies(built: Built) -> NDArray[np.int64]:
+    """Number (from 1) of the body of each point, then of each segment."""
+    body, segments = bodies_of(built), built.grains.segments
+    return body if segments is None else np.concatenate((body, body[segments.ends[:, 0]]))
+
+
+def _gap(built: Built, one: int, other: int) -> float:
+    """How far two discs stand apart, 0 where they touch or nearly do (APART)."""
+    d = built.grains.discs
+    gap = float(np.hypot(*(d.position[one] - d.position[other])) - d.radius[one] - d.radius[other])
+    return gap if gap > APART * min(d.radius[one], d.radius[other]) else 0.0

@@ -36,7 +36,10 @@ def missed(folder: Path, numbers: Mapping[str, float | None]) -> list[str]:
 
 
 def options(description: str, folder: Path, **more: tuple[type, Any, str]) -> argparse.Namespace:
-    """The options of a script in ``folder``: --out, and those in ``more``, (type, default, help); bool is a flag."""
+    """The options of a script in ``folder``: --out, and those in ``more``, (type, default, help); bool is a flag.
+
+    Ends the program with exit code 2 at what is no option, and at ``packings`` below 1: there would be no mean.
+    """
     parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     default = Path("runs") / folder.name
     parser.add_argument("--out", type=Path, default=default, help=f"folder of the picture (default: {default})")
@@ -45,7 +48,10 @@ def options(description: str, folder: Path, **more: tuple[type, Any, str]) -> ar
             parser.add_argument(f"--{name}", action="store_true", help=text)
         else:
             parser.add_argument(f"--{name}", type=kind, default=value, help=f"{text} (default: {value})")
-    return parser.parse_args()
+    asked = parser.parse_args()
+    if (packings := getattr(asked, "packings", 1)) < 1:
+        parser.error(f"--packings = {packings}: is out of range (allowed: 1 or more)")
+    return asked
 
 
 def stage(columns: int, width: float = 9.0, height: float = 3.4) -> tuple[Figure, list[Axes]]:

@@ -11,14 +11,16 @@ from matplotlib.patches import Patch
 from scipy.spatial import cKDTree
 
 from porescale.common.core.atomic import save
-from porescale.common.core.types import AnyArray
+from porescale.common.core.types import AnyArray, Floats
 from porescale.common.pictures.look import View
-from porescale.common.record.model import Snapshot
+from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.open_run import Run
 
 PRESSED, PULLED, OUTLINE = "#8c1c2f", "#2a6f97", "#8d8573"
 THICKEST = 6.0
 """Width of the line of the 99th percentile of all forces, points."""
+NOISE = 1e-9
+"""Net force of contacts and bonds, over their sizes, that is none: round-off of places over that of overlaps."""
 LEAST, MOST = 2.0, 9.0
 """Size of the numbers of bodies, points."""
 
@@ -37,9 +39,7 @@ def contact_forces(shot: Snapshot, view: View) -> Figure:
     figure, axes = _stage(shot, view, f"normal forces at {shot.time:.4g}")
     if "contacts" not in shot.clouds or not len(shot.clouds["contacts"].position):
         return figure
-    cloud = shot.clouds["contacts"]
-    force, start = np.asarray(cloud["normal_force"], float), np.asarray(cloud["start"], float)[:, :2]
-    ways = np.stack((start, start + np.asarray(cloud["branch"], float)[:, :2]), axis=1)
+    force, ways = forces_of_pairs(shot.clouds["contacts"])
     strongest = float(np.percentile(np.abs(force), 99)) or 1.0
     width = THICKEST * np.minimum(np.abs(force) / strongest, 2.0)
     colours = np.where(force > 0.0, PRESSED, PULLED).tolist()
@@ -47,6 +47,19 @@ def contact_forces(shot: Snapshot, view: View) -> Figure:
     shown = [Patch(color=PRESSED, label="pressed"), Patch(color=PULLED, label="pulled")]
     axes.legend(handles=shown, loc="upper right", fontsize=8, title=f"full width: {strongest:.3g}", title_fontsize=8)
     return figure
+
+
+def forces_of_pairs(cloud: Cloud) -> tuple[Floats, Floats]:
+    """Normal force (m,) of each pair of bodies, of contacts and bonds together, and the ends (m, 2, 2) of its line;
+    0 where they cancel to NOISE.  Contacts with sides of the domain have no bonds and stay apart."""
+    force, start = np.asarray(cloud["normal_force"], float), np.asarray(cloud["start"], float)[:, :2]
+    body, other = np.asarray(cloud["body"], int), np.asarray(cloud["other"], int)
+    row = np.where(other > 0, 0, np.arange(1, len(other) + 1))
+    key = np.column_stack((np.minimum(body, other), np.maximum(body, other), row))
+    _, first, same = np.unique(key, axis=0, return_index=True, return_inverse=True)
+    net, all_of_it = (np.bincount(same.reshape(-1), values, len(first)) for values in (force, np.abs(force)))
+    net = np.where(np.abs(net) > NOISE * all_of_it, net, 0.0)
+    return net.astype(float), np.stack((start, start + np.asarray(cloud["branch"], float)[:, :2]), axis=1)[first]
 
 
 def body_numbers(shot: Snapshot, view: View) -> Figure:

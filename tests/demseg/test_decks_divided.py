@@ -89,7 +89,7 @@ def test_without_pressing_nothing_touches(tmp_path):  # the twin that must fail
 
 def test_what_cannot_be_divided_is_named(tmp_path):
     deck = read_deck(decks.write(tmp_path / "a", decks.CLUMP))
-    with pytest.raises(InputError, match=r"in_gm\.dat: body 1: is no single disc"):
+    with pytest.raises(InputError, match=r"in_gm\.dat: line 7, body 1: is no single disc"):
         divided(deck, "cells")
     with pytest.raises(InputError, match=r"in_gm\.dat: thick = 0"):
         divided(read_deck(decks.write(tmp_path / "b", decks.DISC)), "cells")
@@ -102,3 +102,14 @@ def test_what_cannot_be_divided_is_named(tmp_path):
     demseg.volonoi(tmp_path / "c", out=tmp_path / "d")
     with pytest.raises(InputError, match="is there already"):
         demseg.volonoi(tmp_path / "c", out=tmp_path / "d")
+
+
+def test_in_gm_alone_is_divided_and_named_with_its_folder(tmp_path):
+    folder = decks.write(tmp_path / "deck", RANDOM)
+    (folder / "in_bc.dat").unlink()
+    assert demseg.volonoi(folder, out=tmp_path / "out") == 0
+    assert (tmp_path / "out" / "in_gm_tri.dat").exists()
+    decks.write(folder, decks.DISC.replace("10.0d0 0.0d0\n1 0 0", "10.0d0 0.1d0\n1 0 0"))
+    with pytest.raises(InputError) as caught:
+        demseg.volonoi(folder, out=tmp_path / "none")
+    assert str(caught.value).startswith(f"{folder / 'in_gm.dat'}, centres of discs: seeds = 1: too few")

@@ -7,13 +7,14 @@ import pytest
 
 from porescale.cli import demseg
 from porescale.common.record.drive import drive
+from porescale.common.record.model import Cloud
 from porescale.common.record.open_run import open_run
 from porescale.dem.measures.contacts import contacts
 from porescale.demseg.build import Options
 from porescale.demseg.deck import read_deck
 from porescale.demseg.outputs import contact_cloud
 from porescale.demseg.run import read
-from porescale.output.deck_pictures import places_of_bodies, write_deck_pictures
+from porescale.output.deck_pictures import forces_of_pairs, places_of_bodies, write_deck_pictures
 from tests.reference import decks
 
 PAIR = decks.grains("2 1 0", "1 1 1", "0 0 0", "1 1.0d0", "0 .99 0", "2 1 1", "0 0 0", "1 1.0d0", "0 2.98 0",
@@ -149,3 +150,17 @@ def test_the_command_leaves_every_file_that_the_documentation_names(tmp_path):
              "numbers.png", "new_in_gm.dat", "new_in_bc.dat", "new_in_cf.dat", "new_in_cf0.dat")  # fmt: skip
     assert [name for name in names if not (tmp_path / "out" / name).exists()] == []
     assert read_deck(folder).nstep == 20
+
+
+def test_contacts_and_bonds_of_a_pair_are_one_line_of_their_net_force():
+    # Bodies 1 and 2 touch at two corners and are bonded at both, in either order; 2 and 3 press; 1 stands on the floor.
+    body, other = np.array([1, 2, 1, 2, 2, 1, 1]), np.array([2, 1, 2, 1, 3, -3, -3])
+    force = np.array([5.0, -5.0 + 1e-10, 3.0, -3.0, 2.0, 4.0, 4.0])
+    flat = np.zeros((7, 3))
+    data = {"body": body, "other": other, "normal_force": force, "start": flat, "branch": np.ones((7, 3))}
+    net, ways = forces_of_pairs(Cloud(flat, data))
+    assert sorted(net.tolist()) == [0.0, 2.0, 4.0, 4.0]
+    assert ways.shape == (4, 2, 2)
+    # The check that must fail: without one of the bonds the pair presses.
+    less = {name: np.delete(values, 1, axis=0) for name, values in data.items()}
+    assert sorted(forces_of_pairs(Cloud(flat[:-1], less))[0].tolist()) == [2.0, 4.0, 4.0, 5.0]

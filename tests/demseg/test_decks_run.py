@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from porescale.cli.main import commands
+from porescale.common.cli.application import main
 from porescale.common.core.errors import InputError, Unstable
 from porescale.common.neighbors.placement import place
 from porescale.common.record.drive import drive
@@ -114,6 +116,43 @@ def test_another_place_than_the_continuation_has_is_refused(tmp_path):
         read(folder, OPTIONS)
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        (Options(rule="each"), Options(), ["--rule: is outline, but the run before had each; give --rule each"]),
+        (Options(rod=0.3), Options(), ["--rod: is 0.1, but the run before had 0.3; give --rod 0.3"]),
+        (Options(), Options(release="force"), ["--release: is force, but the run before had overlap; give --release"]),
+        (Options(release="force", rule="printed", rod=0.2), Options(rule="each"), ["--release", "--rule", "--rod"]),
+    ],
+)
+def test_a_run_goes_on_with_its_options_and_no_others(tmp_path, before, after, said):
+    first = read(decks.write(tmp_path / "a", decks.SEGMENT), before)
+    first.advance(5)
+    first.write_next(tmp_path / "a")
+    folder = go_on(tmp_path / "a", tmp_path / "b", "1 5 20 20 10")
+    assert read(folder, before).options == before
+    with pytest.raises(InputError) as caught:
+        read(folder, after)
+    assert len(caught.value.faults) == len(said)
+    for fault, each in zip(caught.value.faults, said, strict=True):
+        assert f"{folder / 'in_cf.dat'}: {each}" in fault.line()
+    # Files of before options were kept have none, and are read as they are.
+    text = (folder / "in_cf.dat").read_text()
+    assert text.count("\noptions/") == 3
+    lines = text.splitlines(keepends=True)
+    gone = [k for k, line in enumerate(lines) if line.startswith("options/")]
+    (folder / "in_cf.dat").write_text(
+        "".join(line for k, line in enumerate(lines) if k - 1 not in gone and k not in gone)
+    )
+    read(folder, after)
+
+
+def test_a_rule_is_no_matter_where_there_are_only_discs(tmp_path):  # nothing to refuse
+    first = read(decks.write(tmp_path / "a"), Options(rule="each", rod=0.3))
+    first.write_next(tmp_path / "a")
+    read(go_on(tmp_path / "a", tmp_path / "b", "1 5 20 20 10"), Options())
+
+
 def test_the_chain_is_bonded_by_what_the_tutorial_prints(tmp_path):
     # Section II-3: discs 2 apart of radius 1.1, k 1e8: -20000000 with each neighbour.  Coordinates up to 50 round the
     # overlap 0.2 by 50 eps, so the force by 1e8 50 eps < 2e-6.
@@ -215,6 +254,12 @@ def test_squares_are_bonded_side_to_side_and_stay(tmp_path):
         ("1 1\n2 -2d7\n2 2\n1 -2d7\n3 -2d7\n", "number 3: has no bond with 2, but 2 has one with it"),
         ("1 1\n2 2d7\n2 1\n1 2d7\n", "line 2, tension = 20000000: makes no sense, expected < 0, as a bond cancels"),
         ("1 2\n2 -2d7\n2 -2d7\n2 1\n1 -2d7\n", "line 3, other = 2: makes no sense, expected each once for 1"),
+        (
+            "1 1\n20 -1\n20 1\n1 -1\n",
+            "line 2, other = 20: makes no sense, expected a disc that touches 1: they stand 35.8",
+        ),
+        ("", "bonds = 0: there are none, and jclid 3 needs some; write jclid 0 in in_bc.dat to run without bonds"),
+        ("1 0\n2 0\n", "bonds = 0: there are none"),
     ],
 )
 def test_malformed_tensions_are_named_by_line(tmp_path, text, said):
@@ -222,6 +267,51 @@ def test_malformed_tensions_are_named_by_line(tmp_path, text, said):
     with pytest.raises(InputError) as caught:
         read_tensions(tmp_path / "in_cf0.dat", model.built)
     assert said in str(caught.value)
+
+
+def test_positive_bonds_of_discs_are_one_line_with_their_number(tmp_path):
+    text = tension_text(read(decks.write(tmp_path / "a", decks.chain()), OPTIONS).built).replace("-", "")
+    model = read(decks.write(tmp_path / "b", decks.chain(), in_cf0=text), OPTIONS)
+    with pytest.raises(InputError) as caught:
+        read_tensions(tmp_path / "b" / "in_cf0.dat", model.built)
+    assert len(caught.value.faults) == 1
+    assert "line 2, tension" in str(caught.value)
+    assert str(caught.value).endswith("a bond cancels a contact that presses; so are 37 more rows")  # 38 in all
+
+
+@pytest.mark.parametrize(
+    ("text", "rule", "said"),
+    [
+        (
+            "1 1\n2 -5d6\n2 1\n1 -5d6\n",
+            "outline",
+            "line 2, other = 2: makes no sense, expected a point of another body: 1",
+        ),
+        ("1 1\n10 -5d6\n10 1\n1 -5d6\n", "outline", "line 2, other = 10: makes no sense, expected a point of another"),
+        ("1 1\n6 5d6\n6 1\n1 5d6\n", "each", "line 2, tension = 5000000: makes no sense, expected < 0, as a bond"),
+        ("1 1\n6 5d6\n6 1\n1 5d6\n", "outline", ""),  # the check that must fail
+    ],
+)
+def test_bonds_of_corners_are_between_bodies_and_positive_where_corners_count_once(tmp_path, text, rule, said):
+    model = read(decks.write(tmp_path, SQUARES, in_cf0=text), Options(rule=rule))  # points 1 to 8, segments 9 to 16
+    if not said:
+        assert [row[3] for row in read_tensions(tmp_path / "in_cf0.dat", model.built)] == [-5e6]
+        return
+    with pytest.raises(InputError) as caught:
+        read_tensions(tmp_path / "in_cf0.dat", model.built)
+    assert said in str(caught.value)
+    assert len(caught.value.faults) == 1
+
+
+def test_a_step_beyond_the_stable_one_is_doubted_before_it_is_done(tmp_path, capsys):
+    # 2 sqrt(m/k) of the disc is 1.12e-3; discs in any contacts are stable up to 0.365 of it (timestep.py).
+    for dt, doubted in (("5.0d-5", False), ("6.7d-4", True)):
+        folder = decks.write(tmp_path / dt, decks.DISC.replace("5.0d-5", dt), decks.boundary("0 0 2 2 1"))
+        model = read(folder, OPTIONS)
+        assert len(model.doubts()) == doubted
+        assert main(commands(), ["demseg", "run", str(folder), "--out", str(tmp_path / "out" / dt), "--quiet"]) == 0
+        said = f"warning: {folder / 'in_gm.dat'}: dt = 0.00067 is beyond 0.000409, up to which"
+        assert (said in capsys.readouterr().err) == doubted
 
 
 def test_random_discs_are_as_many_as_the_tutorial_has(tmp_path):
@@ -274,3 +364,45 @@ def test_discs_that_start_anywhere_lie_unevenly():  # the twin that must fail: 0
     radius = np.random.default_rng(0).permutation(1.0 + (np.arange(582) + 0.5) / 582)
     where = place((0.0, 0.0), (80.0, 80.0), radii=radius, seed=0).position
     assert np.abs(strips(where[:, 0], radius) - 2.0 / 3.0).max() > EVEN
+
+
+SMALL = "0 0 0\n5.0d-5 0.0 -980.0d0\n1\n2.5d0 1.0d8 0.25d8 1.0d2 0.5d2 27.0d0\n0 {0} 0 {0} 0\n1.0 2.0\n1\n{1}\n"
+
+
+def test_few_random_discs_that_jam_are_drawn_again(tmp_path, monkeypatch):
+    deck = read_deck(decks.write(tmp_path, SMALL.format(10, 0.5)))
+    for seed in range(3):
+        assert len(random_discs(deck, deck.random, seed)) == 9
+    monkeypatch.setattr("porescale.demseg.build.TRIES", 1)
+    jammed = 0
+    for seed in range(3):  # the check that must fail: one start is not enough for all of them
+        try:
+            random_discs(deck, deck.random, seed)
+        except InputError:
+            jammed += 1
+    assert jammed
+
+
+@pytest.mark.parametrize(
+    ("side", "void", "said"),
+    [
+        (8, 0.5, "line 8, void ratio = 0.5: 6 discs would fill 0.69 of the domain, which is too dense for them to lie"),
+        (30, 0.1, "line 8, void ratio = 0.1: 112 discs would fill 0.91 of the domain, which is too dense"),
+        (2.9, 0.1, "line 6, r2 = 2.0: makes a disc "),
+        (2, 1.5, "line 8, void ratio = 1.5: leaves no room for a disc; give a smaller one"),
+    ],
+)
+def test_random_discs_that_do_not_fit_are_refused_by_line(tmp_path, monkeypatch, side, void, said):
+    monkeypatch.setattr("porescale.demseg.build.TRIES", 1)
+    deck = read_deck(decks.write(tmp_path, SMALL.format(side, void)))
+    with pytest.raises(InputError) as caught:
+        random_discs(deck, deck.random, 0)
+    assert str(caught.value).startswith(f"{tmp_path / 'in_gm.dat'}: {said}")
+    assert len(caught.value.faults) == 1
+
+
+def test_a_place_that_is_no_number_is_named_as_the_deck_counts(tmp_path):
+    model = read(decks.write(tmp_path), OPTIONS)
+    model.grains.discs.position[0, 1] = np.nan
+    with pytest.raises(Unstable, match=r"position = nan +at point 1;"):
+        model.advance(1)

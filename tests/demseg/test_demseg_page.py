@@ -1,8 +1,12 @@
 """The table of docs/demseg.md says what cases, validations and a moment's computing say."""
 
+import re
+
 import pytest
 
+from porescale.cli.main import PACKAGE as PORESCALE
 from tests.reference.demseg_page import PAGE, ROWS, parts, table, with_table
+from tests.reference.folders import CASES, ROOT
 
 
 def test_the_page_has_the_numbers_of_today():
@@ -13,6 +17,33 @@ def test_the_page_has_the_numbers_of_today():
 def test_a_number_that_changed_is_found():  # the twin that must fail
     text = PAGE.read_text(encoding="utf-8")
     assert with_table(text, table().replace("| 582 | 582 |", "| 582 | 583 |")) != text
+
+
+VERIFY = re.compile(r"porescale verify ([\w.]+)")
+DECK = re.compile(r"porescale demseg run ([\w/]+)")
+SCRIPT = re.compile(r"python (cases/[\w/.]+)")
+
+
+def unknown(command):
+    """Validations, decks and scripts that a command of the page names, and that are not there."""
+    names = {one.name for one in PORESCALE.validations()}
+    missing = [name for name in VERIFY.findall(command) if name not in names]
+    missing += [name for name in DECK.findall(command) if not (CASES / name / "in_gm.dat").exists()]
+    return missing + [name for name in SCRIPT.findall(command) if not (ROOT / name).exists()]
+
+
+def test_every_command_of_the_page_names_what_there_is():
+    assert [row.command for row in ROWS if unknown(row.command)] == []
+    found = [pattern.search(row.command) for row in ROWS for pattern in (VERIFY, DECK, SCRIPT)]
+    assert sum(match is not None for match in found) > 20
+
+
+@pytest.mark.parametrize("command", [
+    "`porescale verify dem.rock`", "`porescale verify dem.rock_of_triangles`", "`porescale demseg run demseg_square`",
+    "`python cases/rock/stone.py`",
+])  # fmt: skip
+def test_a_command_of_what_is_not_there_is_found(command):  # the twin that must fail
+    assert unknown(command)
 
 
 @pytest.mark.parametrize("section", ["I-2", "I-3", "I-4", "I-5", "I-6", "I-7", "I-8", "II-2", "II-3", "II-4"])

@@ -46,7 +46,7 @@ class Frame:
     body : mass, centroid and inertia by hand.
 
     Raises InputError where there is no segment, one without length, a corner without a segment, a polygon that
-    crosses itself, or no mass.
+    crosses itself or has no area, or no mass.
     """
 
     corners: Corners
@@ -73,8 +73,11 @@ class Frame:
             raise InputError(Fault("frame.ends", self.ends, "every corner must be the end of a segment, and no other"))
         if np.hypot(*(at[ends[:, 1]] - at[ends[:, 0]]).T).min() <= JOINED * float(np.ptp(at, axis=0).max()):
             raise InputError(Fault("frame.corners", self.corners, "a segment has no length", "m"))
+        if self.closed and _flat(at):
+            raise InputError(Fault("frame.corners", None, "the polygon has no area: its corners lie on one line"))
         if self.closed and (crossing := _crossing(at[self.loop])) is not None:
-            raise InputError(Fault("frame.corners", crossing, "the polygon crosses itself between these corners", "m"))
+            numbers = tuple(self._segment(crossed) for crossed in crossing)
+            raise InputError(Fault("frame.corners", numbers, "the polygon crosses itself between these segments"))
         if not self.mass_properties().mass > 0.0:
             raise InputError(Fault("frame.width", self.width, "rods without thickness have no mass", "m", "> 0"))
 
@@ -96,6 +99,12 @@ class Frame:
             before = walked[-1]
             walked.append(ahead)
         return np.array(walked if len(walked) == len(self.corners) else [], np.int64)
+
+    def _segment(self, place: int) -> int:
+        """Number of the segment from one corner of the loop, by its place there, to the next."""
+        loop = self.loop
+        wanted = {int(loop[place]), int(loop[(place + 1) % len(loop)])}
+        return next(k for k, ends in enumerate(self.ends) if set(ends) == wanted)
 
     @property
     def closed(self) -> bool:
@@ -130,6 +139,13 @@ def chain(corners: ArrayLike, thickness: float, density: float, **more: Any) -> 
 
 def from_ends(segments: ArrayLike, thickness: float, density: float, **more: Any) -> Frame:
     """The frame of segments given by their two ends each, (s, 2, 2) m; ends that coincide are one corner."""
+    corners, ends = joined(segments)
+    return Frame(corners, ends, thickness, density, **more)
+
+
+def joined(segments: ArrayLike) -> tuple[Corners, Ends]:
+    """Corners of segments given by their two ends each, (s, 2, 2) m, and the corners at the ends of each, by number;
+    ends closer than JOINED of the whole size are one corner."""
     points = np.asarray(segments, float).reshape(-1, 2)
     size = float(np.ptp(points, axis=0).max(initial=0.0))
     corners: list[Floats] = []
@@ -139,8 +155,7 @@ def from_ends(segments: ArrayLike, thickness: float, density: float, **more: Any
         number.append(near[0] if near else len(corners))
         if not near:
             corners.append(point)
-    ends = tuple((number[k], number[k + 1]) for k in range(0, len(number), 2))
-    return Frame(_corners(corners), ends, thickness, density, **more)
+    return _corners(corners), tuple((number[k], number[k + 1]) for k in range(0, len(number), 2))
 
 
 def _corners(points: ArrayLike) -> Corners:
@@ -167,6 +182,12 @@ def rod_moments(one: Floats, other: Floats, width: float) -> tuple[float, Floats
     own = length * (length**2 + width**2) / 12.0
     away = length * np.sum((middle - centroid) ** 2, axis=1)
     return width * float(length.sum()), np.asarray(centroid), width * float((own + away).sum())
+
+
+def _flat(at: Floats) -> bool:
+    """Whether points (k, 2) m lie on one line, within JOINED of their size."""
+    long, across = np.linalg.svd(at - at.mean(axis=0), compute_uv=False)
+    return bool(across <= JOINED * long)
 
 
 def _crossing(at: Floats) -> tuple[int, int] | None:
