@@ -218,8 +218,8 @@ def test_cohesion_of_eq_54_pulls_particles_together():
     away = layer.x[:, None] - layer.x[None]
     away -= np.rint(away)
     slope = np.array([kernel_slope(WENDLAND, q, h) for q in np.hypot(away[..., 0], away[..., 1]).ravel() / h])
-    # eq. 54 beside pressures that vanish at ρ0: dv_i = 2 (a/m²) Σ m_j ∇_i W
-    expected = 2.0 * a / mass * (slope.reshape(away.shape[:2])[..., None] * away).sum(axis=1)
+    # eq. 54 beside pressures that vanish at ρ0: dv_i = 2 (a/m²) Σ m_j ∇_i W, times the number of plain sums
+    expected = flow.law.lattice * 2.0 * a / mass * (slope.reshape(away.shape[:2])[..., None] * away).sum(axis=1)
     np.testing.assert_allclose(layer.acceleration, expected, atol=1e-12 * np.abs(expected).max())
 
 
