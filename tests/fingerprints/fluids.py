@@ -41,7 +41,7 @@ width = "12 mm"
 height = "14 mm"
 right = "slip"
 [time]
-end = 1
+end = 0.4
 [output]
 snapshot_interval = 1
 series_interval = 1

@@ -81,7 +81,7 @@ def test_pores_under_a_water_table_are_full_and_those_over_it_empty():
     model = Simulation(scene({"water_table": 0.2, "held": True}, **CLOSED))
     soil = model.snapshot().clouds["soil"]
     height = soil.position[:, 1]
-    # W reaches over the level by 2.7 spacings, two thirds of which lie under it at 0.1 m: nearer to full, 1, than to half
+    # W reaches over the level by 2.7 spacings, most of which lie under it at 0.1 m: nearer to full, 1, than to half
     # a kernel, which is a saturation of a half.
     assert soil.data["saturation"][height < 0.1].min() > 0.75
     assert soil.data["saturation"][height > 0.35].max() == 0.0
