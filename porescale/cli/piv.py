@@ -153,6 +153,7 @@ def compare(
     circulation, surfaces of piles.
     """
     from porescale.common.core.atomic import write_text
+    from porescale.common.core.ranges import Range
     from porescale.common.evidence.files import finite
     from porescale.piv import given
     from porescale.piv.fields.compare import ALIGNED
@@ -164,7 +165,7 @@ def compare(
         require_writable(out, "--out")
     moment = None if at is None else quantity("--time", at, "s")
     bounds = (("--factor", factor, 1.0), ("--within", within, 0.0), ("--error", error, 0.0))
-    given.refuse(*(given.number(key, it, least, ends="(]") for key, it, least in bounds if it is not None))
+    given.refuse(*(given.within(key, it, Range(gt=least)) for key, it, least in bounds if it is not None))
     first, second = _field(reference, moment), _field(other, moment)
     one, two = (surface_of_run(path, first.x, moment) if path.is_dir() else None for path in (reference, other))
     found = compare_fields(first, second, within, factor, (one, two), error)

@@ -10,6 +10,7 @@ from typing import Any, TypeGuard
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range
 
 BRIGHTEST = 1e7
 """Size of a grey level, at most: sums of its fourth powers over a block of pixels, and over a thousand pairs, are
@@ -29,29 +30,10 @@ def is_whole(value: Any) -> TypeGuard[int]:
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
-def whole(key: str, value: Any, least: int, most: int | None = None, unit: str = "") -> list[Fault]:
-    """Faults of a whole number from ``least`` to ``most``, any from ``least`` on where that is None."""
-    allowed = f">= {least}" if most is None else f"{least} to {most}"
-    if not is_whole(value):
-        return [Fault(key, value, f"is no whole number but {_kind(value)}", unit, allowed)]
-    good = least <= value and (most is None or value <= most)
-    return [] if good else [Fault(key, value, "is out of range", unit, allowed)]
-
-
-def number(
-    key: str, value: Any, least: float = -np.inf, most: float = np.inf, unit: str = "", *, ends: str = "[]"
-) -> list[Fault]:
-    """Faults of a finite number from ``least`` to ``most``;  ends : "(" or ")" where an end itself is left out."""
-    low, high = ends[0], ends[1]
-    if most < np.inf:
-        allowed = f"{'above ' if low == '(' else ''}{least:g} to {'below ' if high == ')' else ''}{most:g}"
-    else:
-        allowed = f"{'>' if low == '(' else '>='} {least:g}" if least > -np.inf else "finite"
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-        return [Fault(key, value, f"is no number but {_kind(value)}", unit, allowed)]
-    good = np.isfinite(value) and least <= value <= most
-    good = good and (low == "[" or value > least) and (high == "]" or value < most)
-    return [] if good else [Fault(key, value, "is out of range", unit, allowed)]
+def within(key: str, value: Any, allowed: Range) -> list[Fault]:
+    """Faults of a number that must be in the range ``allowed``."""
+    fault = allowed.fault_of(key, value)
+    return [] if fault is None else [fault]
 
 
 def region(key: str, value: Any) -> list[Fault]:

@@ -32,7 +32,7 @@ class Range:
         """The range in words, without the unit: "> 0 and <= 1"; "" if every number is allowed."""
         bounds = (("> ", self.gt), (">= ", self.ge), ("< ", self.lt), ("<= ", self.le))
         words = " and ".join(f"{sign}{bound:g}" for sign, bound in bounds if bound is not None)
-        return f"{words}, whole".removeprefix(", ") if self.whole else words
+        return f"whole, {words}".removesuffix(", ") if self.whole else words
 
     def contains(self, value: Any) -> Any:
         """Whether ``value`` (in ``unit``) lies within the bounds; of an array, which values of it do."""
@@ -67,7 +67,9 @@ FINITE = Range()
 
 
 def is_number(value: object) -> bool:
-    """Whether ``value`` is a real number, of Python or numpy."""
+    """Whether ``value`` is a real number, of Python or numpy; True and False are none."""
+    if isinstance(value, bool | np.bool_):
+        return False
     return isinstance(value, Real) or (getattr(value, "shape", None) == () and hasattr(value, "__float__"))
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import threads
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range
 from porescale.common.core.types import Flags, Floats
 from porescale.piv import given
 from porescale.piv.estimate.fit import Equations, at_places, equations, solved, variances
@@ -56,13 +57,13 @@ class Settings:
         if most < SMALLEST:
             sides = " x ".join(map(str, size[::-1]))
             raise InputError(Fault("pictures", sides, "are too small", "px", f"{SMALLEST} a side and more"))
-        faults = given.whole("--window", self.window, SMALLEST, most, "px")
+        faults = given.within("--window", self.window, Range("px", ge=SMALLEST, le=most, whole=True))
         if given.is_whole(self.window) and (faults or self.window % 2):
             allowed = f"even, {SMALLEST} to {most}"
             faults = [Fault("--window", self.window, "is not a window of these pictures", "px", allowed)]
-        faults += given.number("--overlap", self.overlap, 0, 1, ends="[)")
-        faults += given.whole("--search", self.search, 1, 256, "px")
-        given.refuse(faults, given.whole("updates", self.updates, 1))
+        faults += given.within("--overlap", self.overlap, Range(ge=0, lt=1))
+        faults += given.within("--search", self.search, Range("px", ge=1, le=256, whole=True))
+        given.refuse(faults, given.within("updates", self.updates, Range(ge=1, whole=True)))
 
     @property
     def firm(self) -> float:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import RegularGridInterpolator
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range
 from porescale.common.core.types import Floats
 from porescale.piv import given
 from porescale.piv.fields.field import Field
@@ -94,9 +95,9 @@ def compare(
     for key, field in (("reference", reference), ("other", other)):
         if not isinstance(field, Field):
             raise InputError(Fault(key, str(field), f"is no field but {type(field).__name__}", repair=repair))
-    near = [] if within is None else given.number("within", within, 0, ends="(]")
-    stated = [] if error is None else given.number("error", error, 0, ends="(]")
-    given.refuse(near, given.number("factor", factor, 1, ends="(]"), stated)
+    near = [] if within is None else given.within("within", within, Range(gt=0))
+    stated = [] if error is None else given.within("error", error, Range(gt=0))
+    given.refuse(near, given.within("factor", factor, Range(gt=1)), stated)
     if reference.upwards != other.upwards:
         repair = "give both a scale, or none"
         raise InputError(Fault("fields", None, "one has y up (metres), the other y down (pixels)", repair=repair))

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range
 from porescale.common.core.types import Floats
 from porescale.common.record.open_run import Run
 from porescale.piv import given
@@ -121,7 +122,11 @@ def shooting(run: Run, shot: Shooting) -> Shooting:
     elif span / shot.interval > LONGEST:
         problem = f"makes more than {LONGEST} frames between --start and --end"
         faults.append(Fault("--interval", shot.interval, problem, "s", "", "take a longer one"))
-    given.refuse(faults, given.number("--exposure", shot.exposure, 0, 1), given.whole("--seed", shot.seed, 0))
+    given.refuse(
+        faults,
+        given.within("--exposure", shot.exposure, Range(ge=0, le=1)),
+        given.within("--seed", shot.seed, Range(ge=0, whole=True)),
+    )
     camera = replace(shot.camera, size=(size[0], size[1]))
     camera.check()
     return replace(shot, camera=camera)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.given_file import given_bytes, require_finite
+from porescale.common.core.ranges import Range
 from porescale.piv import given
 from porescale.piv.images import stacks
 from porescale.piv.images.numbered import doubt_of_order, natural
@@ -141,7 +142,11 @@ def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
 def opened(names: Sequence[str | Path], **chosen: Any) -> Film:
     """A film as ``open_film`` gives it, without its warnings."""
     given.refuse(
-        *(given.whole(f"--{key}", chosen[key], least) for key, least in LEAST.items() if chosen.get(key) is not None),
+        *(
+            given.within(f"--{key}", chosen[key], Range(ge=least, whole=True))
+            for key, least in LEAST.items()
+            if chosen.get(key) is not None
+        ),
         given.region("--region", chosen.get("region")),
     )
     if len(names) == 1:

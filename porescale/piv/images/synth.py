@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.ranges import FINITE, Range
 from porescale.common.core.types import Floats
 from porescale.piv import given
 from porescale.piv.estimate.grid import Grid
@@ -39,14 +40,14 @@ class Camera:
     def check(self) -> None:
         """Raises InputError with every bound that is broken."""
         size = self.size if isinstance(self.size, tuple | list) and len(self.size) == 2 else (self.size,)
-        sides = [fault for it in size for fault in given.whole("size", it, 8, unit="px")]
+        sides = [fault for it in size for fault in given.within("size", it, Range("px", ge=8, whole=True))]
         given.refuse(
             sides[:1],
-            given.number("density", self.density, 0, 1),
-            given.number("diameter", self.diameter, 0.1, 50, unit="px"),
-            given.number("noise", self.noise, 0),
-            *(given.number(key, getattr(self, key)) for key in ("peak", "sheet", "background", "disc")),
-            given.number("lost", self.lost, 0, 1),
+            given.within("density", self.density, Range(ge=0, le=1)),
+            given.within("diameter", self.diameter, Range("px", ge=0.1, le=50)),
+            given.within("noise", self.noise, Range(ge=0)),
+            *(given.within(key, getattr(self, key), FINITE) for key in ("peak", "sheet", "background", "disc")),
+            given.within("lost", self.lost, Range(ge=0, le=1)),
         )
 
 
@@ -64,7 +65,7 @@ def pair(flow: Flow, camera: Camera | None = None, seed: int = 0) -> Pair:
     """Pictures half an interval before and after mid time.  InputError for a camera or seed out of bounds."""
     camera = camera or Camera()
     camera.check()
-    given.refuse(given.whole("seed", seed, 0))
+    given.refuse(given.within("seed", seed, Range(ge=0, whole=True)))
     random = np.random.default_rng(seed)
     x, y, light = seeded(flow, camera, random, shares=1 + camera.lost)
     count = round(len(x) * (1 - camera.lost) / (1 + camera.lost))  # in both; the rest half in each

@@ -27,7 +27,7 @@ def test_a_scene_of_another_kind_is_named():
 
 @pytest.mark.parametrize("changes", [None, "time.end=1", ["time.end=1"]])
 def test_changes_are_a_mapping(changes):
-    with pytest.raises(InputError, match=r'write it as scene\.with_\({"fluid\.spacing": 0\.001}\)'):
+    with pytest.raises(InputError, match=r'write it as scene\.with_\({"time\.end": 0\.1}\)'):
         scene_of("dry").with_(changes)
 
 
