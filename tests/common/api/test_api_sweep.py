@@ -25,6 +25,7 @@ snapshot_interval = 0.01
 series_interval = 0.01
 [contact]
 stiffness = 1e5
+tangential_stiffness = 5e4
 friction = 0.3
 restitution = 0.5
 [grains]
