@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from porescale.common.core.ranges import Range, numbers, require_in_range
+from porescale.common.core.ranges import Range, misfit, require_in_range
 from porescale.common.core.types import Floats
 from porescale.dem.finite import check_finite, unstable
 from porescale.dem.forces.walls import HIGH, LOW, PRESENT, X
@@ -27,15 +27,18 @@ STEP = {"dt": Range("s", gt=0), "count": Range(ge=0, whole=True), "drag": Range(
 def check_step(grains: State, given: StepNumbers, force: Floats | None, torque: Floats | None) -> None:
     """Raise InputError where dt (s), count or drag (1/s) of ``given``, or a load is no such number.
 
-    force (n, 2) N/m, torque (n,) N m/m, or None.  What passed is kept in ``checked``, so that further calls with the
-    same numbers and arrays cost nothing.
+    force (n, 2) N/m, torque (n,) N m/m, or None: their shapes alone; `check` finds loads that are not finite.  What
+    passed is kept in ``checked``, so that further calls with the same numbers and arrays cost nothing.
     """
     require_in_range("step", dict(zip(STEP, given, strict=False)), STEP)
     count = grains.discs.count
-    if force is not None:
-        numbers("step.external_force", force, (count, 2), Range("N/m"), "grain", spread=True)
-    if torque is not None:
-        numbers("step.external_torque", torque, (count,), Range("N m/m"), "grain", spread=True)
+    for key, given_array, shape, unit in (
+        ("step.external_force", force, (count, 2), "N/m"), ("step.external_torque", torque, (count,), "N m/m"),
+    ):  # fmt: skip
+        try:
+            np.broadcast_to(np.asarray(0.0 if given_array is None else given_array, np.float64), shape)
+        except (TypeError, ValueError):
+            raise misfit(key, given_array, shape, Range(unit), spread=True) from None
     grains.checked = given, force, torque
 
 

@@ -29,9 +29,8 @@ def two(law=LAW, **options):
         ({"count": -1}, "step.count"),
         ({"drag": math.nan}, "step.drag"),
         ({"drag": -1.0}, "step.drag"),
-        ({"external_force": np.array([[0.0, 0.0], [0.0, math.nan]])}, "step.external_force = nan N/m: of grain 1"),
         ({"external_force": np.zeros((3, 2))}, r"step.external_force: has the shape \(3, 2\)"),
-        ({"external_torque": np.array([0.0, math.inf])}, "step.external_torque"),
+        ({"external_torque": np.zeros(3)}, "step.external_torque"),
     ],
 )
 @pytest.mark.parametrize("later", [False, True])

@@ -1,10 +1,11 @@
 """Bodies that no run can begin with are refused in one line with file, line and numbers; resting ones go on."""
 
+import numpy as np
 import pytest
 
 from porescale.cli.main import commands
 from porescale.common.cli.application import main
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, Unstable
 from porescale.demseg.build import Options
 from porescale.demseg.check import SUNK
 from porescale.demseg.deck import boundary_text, read_deck
@@ -113,3 +114,21 @@ def test_a_body_pressed_into_a_side_goes_on_bit_for_bit(tmp_path, name, steps):
     bc.write_text(boundary_text(deck).replace("1 ", "0 ", 1), encoding="utf-8")
     assert read(tmp_path / "out", Options()).deck.jclid == 0
     assert main(commands(), ["demseg", "convert", str(tmp_path / "out"), "--out", str(tmp_path / "a.toml")]) == 0
+
+
+def test_a_place_that_is_no_number_is_named_as_the_deck_counts(tmp_path):
+    model = read(decks.write(tmp_path), Options())
+    model.grains.discs.position[0, 1] = np.nan
+    with pytest.raises(Unstable, match=r"position = nan +at point 1;"):
+        model.advance(1)
+
+
+def test_a_step_beyond_the_stable_one_is_doubted_before_it_is_done(tmp_path, capsys):
+    # 2 sqrt(m/k) of the disc is 1.12e-3; discs in any contacts are stable up to 0.365 of it (timestep.py).
+    for dt, doubted in (("5.0d-5", False), ("6.7d-4", True)):
+        folder = decks.write(tmp_path / dt, decks.DISC.replace("5.0d-5", dt), decks.boundary("0 0 2 2 1"))
+        model = read(folder, Options())
+        assert len(model.doubts()) == doubted
+        assert main(commands(), ["demseg", "run", str(folder), "--out", str(tmp_path / "out" / dt), "--quiet"]) == 0
+        said = f"warning: {folder / 'in_gm.dat'}: dt = 0.00067 is beyond 0.000409, up to which"
+        assert (said in capsys.readouterr().err) == doubted

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-from porescale.cli.main import commands
-from porescale.common.cli.application import main
 from porescale.common.core.errors import InputError, Unstable
 from porescale.common.neighbors.placement import place
 from porescale.common.record.drive import drive
@@ -303,17 +301,6 @@ def test_bonds_of_corners_are_between_bodies_and_positive_where_corners_count_on
     assert len(caught.value.faults) == 1
 
 
-def test_a_step_beyond_the_stable_one_is_doubted_before_it_is_done(tmp_path, capsys):
-    # 2 sqrt(m/k) of the disc is 1.12e-3; discs in any contacts are stable up to 0.365 of it (timestep.py).
-    for dt, doubted in (("5.0d-5", False), ("6.7d-4", True)):
-        folder = decks.write(tmp_path / dt, decks.DISC.replace("5.0d-5", dt), decks.boundary("0 0 2 2 1"))
-        model = read(folder, OPTIONS)
-        assert len(model.doubts()) == doubted
-        assert main(commands(), ["demseg", "run", str(folder), "--out", str(tmp_path / "out" / dt), "--quiet"]) == 0
-        said = f"warning: {folder / 'in_gm.dat'}: dt = 0.00067 is beyond 0.000409, up to which"
-        assert (said in capsys.readouterr().err) == doubted
-
-
 def test_random_discs_are_as_many_as_the_tutorial_has(tmp_path):
     # I-7: box 80 by 80, radii 1 to 2, void ratio 0.5: 6400/1.5/(7 pi/3) = 582.05.
     gm = "0 0 0\n5.0d-5 0.0 -980.0d0\n1\n2.5d0 1.0d8 0.25d8 1.0d2 0.5d2 27.0d0\n0 80 0 80 0\n1.0 2.0\n1\n0.5\n"
@@ -399,10 +386,3 @@ def test_random_discs_that_do_not_fit_are_refused_by_line(tmp_path, monkeypatch,
         random_discs(deck, deck.random, 0)
     assert str(caught.value).startswith(f"{tmp_path / 'in_gm.dat'}: {said}")
     assert len(caught.value.faults) == 1
-
-
-def test_a_place_that_is_no_number_is_named_as_the_deck_counts(tmp_path):
-    model = read(decks.write(tmp_path), OPTIONS)
-    model.grains.discs.position[0, 1] = np.nan
-    with pytest.raises(Unstable, match=r"position = nan +at point 1;"):
-        model.advance(1)

@@ -109,9 +109,9 @@ def numbers(
         if spread:
             made = np.broadcast_to(made, shape).copy()
     except (TypeError, ValueError):
-        raise _misfit(key, given, shape, within, spread=spread) from None
+        raise misfit(key, given, shape, within, spread=spread) from None
     if made.ndim != len(shape) or any(one not in (other, -1) for other, one in zip(made.shape, shape, strict=True)):
-        raise _misfit(key, given, shape, within, spread=spread)
+        raise misfit(key, given, shape, within, spread=spread)
     bad = np.argwhere(~(np.isfinite(made) & within.contains(made)))
     if len(bad):
         where = f"of {of} {bad[0][0]}" if of else ""
@@ -135,7 +135,7 @@ def require_arrays(place: str, given: Mapping[str, AnyArray], shapes: Mapping[st
         raise InputError(faults)
 
 
-def _misfit(key: str, given: Any, shape: tuple[int, ...], within: Range, *, spread: bool) -> InputError:
+def misfit(key: str, given: Any, shape: tuple[int, ...], within: Range, *, spread: bool) -> InputError:
     """The error for what is no array of numbers of this shape."""
     allowed = f"shape {str(shape).replace('-1', 'n')}{', or one for all' if spread else ''}"
     repair = f"give numbers{f' in {within.unit}' if within.unit else ''} of this shape"

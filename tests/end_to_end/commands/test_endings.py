@@ -109,7 +109,7 @@ def test_a_lattice_beyond_the_memory_is_refused_before_anything_is_built(ends, s
     options = ("--out", tmp_path / "out", "--quiet") if command == "run" else ()
     code, (line,) = ends(command, scene, *fine, *options)
     assert code == 2
-    assert line.startswith("fluid.spacing = 1e-09 m: needs ")
+    assert line.startswith("--set: fluid.spacing = 1e-09 m: needs ")
     assert line.endswith("takes half of the memory")
     assert list(tmp_path.iterdir()) == []
 
