@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from continuum_sph.scene.face import face_names
 from porescale.common.pictures.initial import Feature, Lens, Points
+from porescale.common.schema.names import names_of
 
 if TYPE_CHECKING:
     from continuum_sph.scene.sections import Scene
@@ -85,7 +85,7 @@ def _water(scene: Scene) -> Iterator[Feature]:
             course = ((middle, first), (middle, last))
         path = ((basin.left, first), (basin.right, first))
         yield Feature("open", f"reservoir {basin.name or k}, {text}", path=path, course=course, dashed=True)
-    for name, face in zip(face_names(scene.face), scene.face, strict=True):
+    for name, face in zip(names_of(scene.face, "face"), scene.face, strict=True):
         size = scene.tank.width, scene.tank.height
         (start, end), (at, _) = face.reach(size), face.across(size)
         ends = ((start, at), (end, at)) if face.axis == 0 else ((at, start), (at, end))

@@ -74,11 +74,12 @@ def plain_walls(fluid, start, split, partner, record, h, g):
 
 @parallel_kernel
 def plain_pairs(
-    fluid, start, split, partner, record, acceleration, rate, smoothed, h, g, alpha, softening, delta, noise_speed,
-    sound, mu, xsph, lattice,
+    fluid, start, split, partner, record, acceleration, rate, smoothed, h, g, braking, softening, spreading,
+    noise_speed, mu, xsph, lattice,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), and ``smoothed`` (fluid, 2) if it is not None, as
-    `rates.rates`;  g: downwards;  xsph: ε, or None;  lattice: of `parameters.Law`.
+    `rates.rates`;  g: downwards;  braking, spreading: α c0, m/s, and 2 δ h c0, m²/s;  xsph: ε, or None;  lattice: of
+    `parameters.Law`.
 
     Flat arguments: see `plain_drift`, 3 %.
     """
@@ -108,7 +109,7 @@ def plain_pairs(
             spread += (rho - rho_j + (stiff + stiff_j) * (half_g * dy)) * (part * hasty)
             change += approach * part
             both = rho + rho_j
-            damp = -2.0 * alpha * sound * h * minimum(approach, 0.0) / ((distance2 + soft) * both) * rho_j
+            damp = -2.0 * braking * h * minimum(approach, 0.0) / ((distance2 + soft) * both) * rho_j
             push = ((own + pressure_j) * specific + damp) * part
             brake = friction * part
             ax += brake * vx - push * dx
@@ -129,7 +130,7 @@ def plain_pairs(
             wy -= push * dy
         acceleration[i, 0] = lattice * (reduce_add(ax) + wx)
         acceleration[i, 1] = lattice * (reduce_add(ay) + wy) - g
-        rate[i] = rho * lattice * (reduce_add(change) + swept) + delta * sound * reduce_add(spread)
+        rate[i] = rho * lattice * (reduce_add(change) + swept) + spreading * reduce_add(spread)
         if smoothed is not None:
             smoothed[i, 0] = strength * reduce_add(sx)
             smoothed[i, 1] = strength * reduce_add(sy)
@@ -193,8 +194,8 @@ class PlainColumn:
         where = (self.fluid, listed.start, self._split, listed.partner, self.record)
         plain_walls(*where, h, -law.gravity[1])
         plain_pairs(
-            *where, self.acceleration, self._rate, self._smoothed, h, -law.gravity[1], law.alpha, law.softening,
-            2.0 * law.diffusion * h, law.noise_speed, sound, law.fluids[0].viscosity, law.xsph or None,
+            *where, self.acceleration, self._rate, self._smoothed, h, -law.gravity[1], law.alpha * sound, law.softening,
+            2.0 * law.diffusion * h * sound, law.noise_speed, law.fluids[0].viscosity, law.xsph or None,
             law.lattice,
         )  # fmt: skip
         hardest = plain_kick(

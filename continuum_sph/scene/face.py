@@ -10,7 +10,7 @@ from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.soil import SoilSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
-from porescale.common.schema.names import name_faults, names_of
+from porescale.common.schema.names import name_faults
 from porescale.common.schema.sections import Section, quantity
 
 Size = tuple[float, float]
@@ -96,8 +96,3 @@ def face_faults(
             if other.side == it.side and min(end, stop) - max(start, begin) > 0.5 * spacing:
                 found.append(Fault(key, it.side, f"overlaps face[{j}]", repair="move or shorten one of them"))
     return found + name_faults("face", faces, "face")
-
-
-def face_names(faces: Sequence[FaceSection]) -> list[str]:
-    """Names of the faces in columns and messages."""
-    return names_of(faces, "face")

@@ -69,6 +69,7 @@ RANGES = {
     "alpha": Range("1/m", gt=0), "n": Range(gt=1), "residual": Range(ge=0, lt=1), "weight": Range("N/m^3", gt=0),
     "stiffness": Range("Pa", gt=0),
 }  # fmt: skip
+"""What the numbers may be: the curve falls and has a slope everywhere."""
 
 
 @dataclass(frozen=True)

@@ -23,25 +23,35 @@ SNAPSHOT = 1000.0
 """Bytes of a snapshot besides its numbers."""
 ALWAYS = 2.0**27
 """Bytes that the compiler of kernels takes itself: any machine has them, and the question takes time to ask."""
-COLUMNS = 12.0
-"""Numbers at each point of its fields in a snapshot: a density, a vector of three, tensors with their invariants."""
-FIELDS = 30.0
-"""Numbers at each point of [coarse_graining] while its fields are made: all that its sums keep."""
+COLUMNS = {"density": 1, "solid_fraction": 1, "velocity": 3, "strain_rate": 5, "stress": 6, "kinetic_stress": 6}
+"""Numbers at a point of each field of [coarse_graining] in a snapshot: a vector has three, a tensor its invariants."""
+SUMS, WORKED = 12.0, 2.0
+"""Numbers of 8 bytes at a point while they are made: of sums, and for each in the snapshot (31 for 10, 54 for 22)."""
 SIDE = 10
 """What a side of a polygon costs, in discs, at the most (verify measures it)."""
 
 
 def points(scene: Scene) -> float:
     """Points at which [coarse_graining] takes its fields."""
-    if scene.coarse_graining is None:
-        return 0.0
+    assert scene.coarse_graining
     return scene.domain.width * scene.domain.height / scene.coarse_graining.spacing**2
+
+
+def columns(scene: Scene) -> int:
+    """Numbers at a point that [coarse_graining] puts into a snapshot."""
+    assert scene.coarse_graining
+    return sum(COLUMNS[name] for name in scene.coarse_graining.fields)
+
+
+def field_bytes(scene: Scene) -> float:
+    """Bytes that [coarse_graining] takes while its fields are made; 0 without it."""
+    return 8.0 * (SUMS + WORKED * columns(scene)) * points(scene) if scene.coarse_graining else 0.0
 
 
 def memory(scene: Scene, derived: Derived) -> float:
     """Bytes that the simulation's arrays will take: populations, solid fields, patches, grains and their fields; an
     estimate."""
-    total = 400.0 * derived.grain_count + 8.0 * FIELDS * points(scene)
+    total = 400.0 * derived.grain_count + field_bytes(scene)
     if derived.cells:
         nx, ny = derived.cells
         total += 9 * derived.precision * row_length(nx) * (ny + 2)
@@ -56,7 +66,8 @@ def snapshot_bytes(scene: Scene, derived: Derived) -> float:
     """Bytes of a snapshot on disk, about: velocity, pressure and solid share of the cells, the grains' columns, their
     fields."""
     cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
-    return SNAPSHOT + 20.0 * cells + 100.0 * derived.grain_count + 4.0 * COLUMNS * points(scene)
+    fields = 4.0 * columns(scene) * points(scene) if scene.coarse_graining else 0.0
+    return SNAPSHOT + 20.0 * cells + 100.0 * derived.grain_count + fields
 
 
 def snapshot_count(end: float, interval: float) -> int:
@@ -108,7 +119,7 @@ def require_memory(scene: Scene, derived: Derived) -> None:
     if need <= ALWAYS or need <= 0.9 * (have := memory_bytes()):
         return
     problem = f"needs {need / 2**30:.1f} of {have / 2**30:.1f} GiB"
-    if scene.coarse_graining and 8.0 * FIELDS * points(scene) > 0.5 * need:
+    if scene.coarse_graining and field_bytes(scene) > 0.5 * need:
         wider = scene.coarse_graining.spacing * math.sqrt(need / (0.5 * have))
         repair = f"points {wider:.2g} m apart take half of the memory"
         raise InputError(Fault("coarse_graining.spacing", scene.coarse_graining.spacing, problem, "m", repair=repair))

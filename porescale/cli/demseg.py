@@ -11,7 +11,7 @@ from cyclopts import App, Parameter
 from porescale.common.api.folders import check_folder
 from porescale.common.cli.options import Threads, use_threads
 from porescale.common.cli.run import summary
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import Fault, InputError, warn
 
 if TYPE_CHECKING:
     from porescale.common.record.drive import Outcome
@@ -51,7 +51,6 @@ def run(
     quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
 ) -> int:
     """Run a deck: run folder, the files of DEMseg, and new_in_*.dat for the run that goes on from its end."""
-    from porescale.common.api.run import warn
     from porescale.common.record.drive import check_resume
     from porescale.demseg.build import Options
     from porescale.demseg.deck import read_deck
@@ -72,7 +71,8 @@ def run(
         check_resume(where, {"package": PACKAGE, "name": name, "scene": scene})
     use_threads(threads)
     model = DeckRun(deck, options, folder)
-    warn(model.doubts())
+    for text in model.doubts():
+        warn(text)
     outcome = drive_deck(model, where, name, scene, resume=resume, overwrite=overwrite, quiet=quiet)
     if not quiet:
         print(summary("porescale", name, where, outcome).rsplit("\n", 1)[0])

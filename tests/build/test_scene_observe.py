@@ -177,3 +177,12 @@ def test_a_whole_run_is_remembered_and_one_that_was_resumed_is_not(tmp_path, mon
     if not resumed:
         took[BUILDING] = 5.0
         assert {phase: told.seconds[phase] for phase in took} == pytest.approx(took, rel=1e-12)
+
+
+def test_numbers_of_coarse_grained_fields_at_a_point_are_those_in_a_snapshot():
+    every = {"spacing": 5e-4, "fields": list(cost.COLUMNS)}
+    for section in ({"spacing": 5e-4}, every):
+        scene = column(grains__packing__settle=False, coarse_graining=section)
+        cells = build(scene).snapshot().grids["grain_fields"].cells
+        points = next(iter(cells.values())).shape[:2]
+        assert cost.columns(scene) == sum(value.size for value in cells.values()) / (points[0] * points[1])

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.scene.face import FaceSection, face_names
+from continuum_sph.scene.face import FaceSection
 from continuum_sph.seepage import PoreFlow, PressureFace
 from continuum_sph.water.state import VX, VY
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
+from porescale.common.schema.names import names_of
 
 FARTHEST = 0.5
 """Spacings by which water may pass a face: no more particles come in."""
@@ -40,7 +41,7 @@ class FacePart(Part):
     """
 
     def __init__(self, sections: Sequence[FaceSection], flow: PoreFlow, spacing: float) -> None:
-        self.names = face_names(sections)
+        self.names = names_of(sections, "face")
         self.faces, self.flow, self.spacing = flow.faces, flow, spacing
         self.outer = [face.rows[self._depth(face, flow.home) < spacing] for face in self.faces]
 

@@ -16,6 +16,7 @@ from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.water.step import Flow
 from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
+from porescale.common.schema.names import names_of
 
 SUPPORT = 2.0  # of the kernels, in smoothing lengths
 IN_THE_OPEN = 1 / 6  # of the grains that ground has: water about which there are fewer is in the open
@@ -133,8 +134,7 @@ def probe_row(
     NAME velocity y (m/s) : at the point
     """
     row: dict[str, float] = {}
-    for k, probe in enumerate(probes):
-        name = probe.name or f"probe {k}"
+    for name, probe in zip(names_of(probes, "probe"), probes, strict=True):
         if probe.width is not None:
             row |= mean_row(name, probe, cloud, cloud.volume * share)
             continue

@@ -34,6 +34,7 @@ from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.part import Part
+from porescale.common.schema.names import names_of
 
 WATER, DRY, WET, AIR = range(4)
 """Values of "layer" in a snapshot's particles: water, soil whose pores are less than half full, other soil, air."""
@@ -187,9 +188,8 @@ class PoreInstruments(Part):
         if self.levels:
             found["levels"] = level_row(self.levels, cloud)
         found[NAME] = phreatic_row(cloud)
-        for number, level in enumerate(self.levels):
+        for name, level in zip(names_of(self.levels, "level"), self.levels, strict=True):
             through = discharge(level, cloud, flow.porosity[there])
-            name = level.name or f"level {number}"
             found["levels"][f"{name} discharge (m2/s)"] = through
             found["levels"][f"{name} open depth (m)"] = open_depth(level, cloud, flow.porosity[there], self.open)
         return found

@@ -24,6 +24,7 @@ from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.state import Layer
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
+from porescale.common.schema.names import names_of
 
 
 def pore_law(scene: Scene) -> Law:
@@ -174,7 +175,8 @@ def seepage_flow(scene: Scene) -> Seepage:
     layer.mass[:present] = (flow.porosity * rho * area)[:present]
     if waiting:
         stiff = law.state.density * law.state.sound_speed**2
-        kept = [reservoir(it, str(number), width) for number, it in enumerate(scene.reservoir)]
+        names = names_of(scene.reservoir, "reservoir")
+        kept = [reservoir(it, name, width) for name, it in zip(names, scene.reservoir, strict=True)]
         both.supply = Supply(layer, kept, berth, spacing, law.state.density, stiff, scene.gravity)
         both.supply.keep(0.0)
     both.start()

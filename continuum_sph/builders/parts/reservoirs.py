@@ -71,10 +71,8 @@ def spare(scene: Scene, x: Floats) -> int:
     return max(round(scene.inner[0] / scene.numerics.spacing) * rows - present, 0) + 1
 
 
-def reservoir(section: ReservoirSection, number: str, width: float) -> Reservoir:
-    """The reservoir of a section in a tank of a ``width``, m;  number: its name if it has none."""
+def reservoir(section: ReservoirSection, name: str, width: float) -> Reservoir:
+    """The reservoir of a section, called ``name``, in a tank of a ``width``, m."""
     times, levels = (np.array(column, np.float64) for column in zip(*section.table, strict=True))
     walls = section.left <= 0.0, section.right >= width * (1.0 - 1e-9)
-    return Reservoir(
-        section.name or f"reservoir {number}", section.left, section.right, section.bottom, times, levels, walls
-    )
+    return Reservoir(name, section.left, section.right, section.bottom, times, levels, walls)

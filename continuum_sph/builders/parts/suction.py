@@ -28,6 +28,7 @@ from porescale.common.core.types import Floats
 from porescale.common.neighbors import square_lattice
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.part import Part
+from porescale.common.schema.names import names_of
 
 REPAIR = "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant"
 FULLEST = 1.5
@@ -67,9 +68,9 @@ def outside_of(scene: Scene, ground: SoilFlow) -> Outside:
     places = square_lattice((0.0, 0.0), (width, height), spacing)
     columns = round(width / spacing)
     levels = []
-    for number, it in enumerate(scene.reservoir):
+    for name, it in zip(names_of(scene.reservoir, "reservoir"), scene.reservoir, strict=True):
         times, heights = (np.array(column, np.float64) for column in zip(*it.table, strict=True))
-        levels.append(Level(it.name or f"reservoir {number}", it.left, it.right, it.bottom, times, heights))
+        levels.append(Level(name, it.left, it.right, it.bottom, times, heights))
     margin = 4.0 * h
     box = (-margin, -margin), (width + margin, height + margin)
     overlap = Overlap(len(places), ground.soil.soil, h, scene.numerics.skin * h, *box)

@@ -7,6 +7,7 @@ from continuum_sph.builders.parts.soil import SoilPart, soil_particles, soil_sec
 from continuum_sph.scene.sections import Scene
 from porescale.common.core.errors import InputError
 from porescale.common.record.part import Part
+from porescale.common.schema.names import names_of
 
 
 class WatchedPart(Part):
@@ -29,10 +30,10 @@ def watched_rows(scene: Scene) -> dict[str, NDArray[np.int64]]:
     """Numbers of the particles of soil of each watched part of a ``scene``, (k,) by name; InputError if it has none."""
     section = soil_section(scene)
     x = soil_particles(scene)[0] if section.watch else np.zeros((0, 2))
-    found = {}
+    found, names = {}, names_of(section.watch, "part")
     for number, part in enumerate(section.watch):
         rows = np.flatnonzero(part.holds(x))
         if not len(rows):
             raise InputError(unfilled(f"soil.watch[{number}].outline", part))
-        found[part.name or f"part {number}"] = rows
+        found[names[number]] = rows
     return found

@@ -15,7 +15,6 @@ from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, 
 from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
-from continuum_sph.scene.face import face_names
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
@@ -241,7 +240,7 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
     or the run ends before the flow is steady."""
     section, numerics, state = soil_section(scene), scene.numerics, water_state(scene)
     out.heading("sides that water passes")
-    for name, it in zip(face_names(scene.face), scene.face, strict=True):
+    for name, it in zip(names_of(scene.face, "face"), scene.face, strict=True):
         start, end = it.reach(scene.inner)
         out.row(name, it.head, "m", f"head, from {start:g} to {end:g} m along the {it.side}")
     storage = section.porosity / (state.density * state.sound_speed**2)

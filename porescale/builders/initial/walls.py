@@ -6,6 +6,7 @@ from typing import Any
 
 from porescale.builders.initial.time_functions import schedule_of, schedule_or_zero
 from porescale.common.compiled.own import OwnLaw
+from porescale.common.schema.names import names_of
 from porescale.dem.forces.walls import NX, NY, PX, PY
 from porescale.dem.grains import Grains
 from porescale.scene.bodies.wall import Wall
@@ -18,7 +19,7 @@ ACROSS = {"left": ("bottom", "top"), "right": ("bottom", "top"), "bottom": ("lef
 
 def wall_names(walls: Sequence[Wall]) -> list[str]:
     """Names of the free walls."""
-    return [it.name or f"wall {k}" for k, it in enumerate(walls)]
+    return names_of(walls, "wall")
 
 
 def moving_sides(domain: Domain) -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from porescale.common.api.folders import IN_PYTHON, check_folder, named_folder
 from porescale.common.api.run_scene import card_of_scene, check_scene_resume
-from porescale.common.core.errors import Fault, InputError, PorescaleWarning
+from porescale.common.core.errors import Fault, InputError, warn
 
 if TYPE_CHECKING:
     from porescale.common.api.open_run import Run
@@ -45,7 +45,8 @@ def run(
         check_scene_resume(program, folder, card)
     if threads is not None:
         set_threads(threads)
-    warn(report.warnings)
+    for text in report.warnings:
+        warn(text)
     if model is None:
         model = program.build(scene)
     program.drive(model, folder, scene, card=card, resume=resume, quiet=not progress, overwrite=overwrite)
@@ -57,14 +58,6 @@ def _require_start(model: BaseSimulation) -> None:
     if model.step:
         problem, repair = "the simulation is no longer at time 0", "build another, or go on with it by its run()"
         raise InputError(Fault("simulation", f"step {model.step}", problem, repair=repair))
-
-
-def warn(texts: list[str]) -> None:
-    """Give warnings of a report as those of Python, which can be silenced and caught."""
-    import warnings
-
-    for text in texts:
-        warnings.warn(text, PorescaleWarning, stacklevel=4)
 
 
 def set_threads(count: int | None) -> int:

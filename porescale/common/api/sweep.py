@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import tomllib
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -15,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from porescale.common.api.folders import IN_PYTHON, named_folder, require_writable
 from porescale.common.api.load_scene import Settings, setting_texts
 from porescale.common.api.shipped import scene_path
-from porescale.common.core.errors import Fault, InputError, PorescaleWarning
+from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.extras import extra
 from porescale.common.schema import scene_file
 
@@ -74,8 +73,7 @@ def sweep(
     ends = run_points(program, campaign, points, jobs, rows, command, log.info)
     for ended in ends:
         if ended.outcome != FINISHED:
-            text = f"{ended.point.name}: {ended.outcome}: {ended.problem}"
-            warnings.warn(text, PorescaleWarning, stacklevel=3)
+            warn(f"{ended.point.name}: {ended.outcome}: {ended.problem}")
     rows = rows or columns_at_end(program, ends)
     made = pd.DataFrame(lines_of(ends, rows, program.table))
     for key in keys_of(ends):
