@@ -27,7 +27,7 @@ from continuum_sph.water.rates import split_rows
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors import PairList
 
-LASTING = 2.0
+LASTING = 1.25
 """Times the step that diffusion was bounded for, how long it may last: one that is longer yet after a short step, or
 the first, would exchange more volume than there is (`SoilLaw.most`)."""
 

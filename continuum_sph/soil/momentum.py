@@ -52,11 +52,11 @@ from continuum_sph.soil.state import (
     X,
     Y,
 )
-from continuum_sph.soil.stress import EXCESS, GROWN, XX, XY, YY, ZZ
+from continuum_sph.soil.stress import CROWD, EXCESS, GROWN, XX, XY, YY, ZZ
 from continuum_sph.water.bundles import image, inverse_period, nearest_image
 from continuum_sph.water.smoothing import kernel_kind, kernel_value, slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, gather_four, gather_rows, maximum, minimum, reduce_add, sqrt, zeros
+from porescale.common.compiled.simd import LANES, gather_four, gather_rows, mask_tail, maximum, minimum, reduce_add, sqrt, zeros
 
 SOFTENING = 0.01  # of h²: keeps the quotient finite when two centres coincide
 
@@ -77,20 +77,22 @@ class Choices(NamedTuple):
 
 @parallel_kernel
 def accelerate(soil, record, facing, force, stress, acceleration, spread, drift, near, choices):
-    """Overwrites ``acceleration`` (soil, 2) m/s², ``spread`` (soil, 6) Pa/s, m²/s and Pa, ``drift`` (soil, 2) m/s.
+    """Overwrites ``acceleration`` (soil, 2) m/s², ``spread`` (soil, 7) Pa/s, m²/s, Pa and 1, ``drift`` (soil, 2) m/s.
 
     record, facing: see `state.Soil`;  force (soil, 2) N/m of other layers;  stress (n, 4) Pa;  near: see
     `water.bundles`;  choices: see `Choices`.
     """
     for i in prange(soil):
-        pushed, diffused, grown, excess = soil_forces(i, record, stress, near, choices)
+        pushed, diffused, grown, excess, crowd = soil_forces(i, record, stress, near, choices)
+        integral = 2.0 * np.pi * kernel_value(kernel_kind(near.kind), 0.0, near.h)
         ax, ay, ux, uy, excess = with_wall_forces(i, record, facing, stress, near, choices, pushed, excess)
         spread[i, XX] = diffused[0]
         spread[i, YY] = diffused[1]
         spread[i, XY] = diffused[2]
         spread[i, ZZ] = diffused[3]
         spread[i, GROWN] = choices.spacing * choices.spacing * grown
-        spread[i, EXCESS] = excess / (2.0 * np.pi * kernel_value(kernel_kind(near.kind), 0.0, near.h))
+        spread[i, EXCESS] = excess / integral
+        spread[i, CROWD] = choices.spacing * choices.spacing * crowd / integral
         drift[i, 0] = 0.5 * choices.spacing_recovery * ux
         drift[i, 1] = 0.5 * choices.spacing_recovery * uy
         acceleration[i, 0] = ax + choices.gx + force[i, 0] / record[i, MASS]
@@ -100,7 +102,8 @@ def accelerate(soil, record, facing, force, stress, acceleration, spread, drift,
 @inline
 def soil_forces(i, record, stress, near, choices):
     """Sums over soil partners of particle i: (acceleration m/s² and spacing recovery m/s over A/2, (x, y) each;
-    diffusion of stress, Pa/s: xx, yy, xy, zz;  that of volume over spacing², 1/s;  Σ -V_j (p_j - p_i) (1/r) W', Pa/m²).
+    diffusion of stress, Pa/s: xx, yy, xy, zz;  that of volume over spacing², 1/s;  Σ -V_j (p_j - p_i) (1/r) W',
+    Pa/m²;  Σ -(1/r) W', 1/m⁴).
 
     The arguments: of `accelerate`.
     """
@@ -119,16 +122,17 @@ def soil_forces(i, record, stress, near, choices):
     gxx, gxy, gyx, gyy = record[i, GXX], record[i, GXY], record[i, GYX], record[i, GYY]
     xx, yy, xy, zz = stress[i, XX], stress[i, YY], stress[i, XY], stress[i, ZZ]
     bx, by, wx, wy, grown = zeros(), zeros(), zeros(), zeros(), zeros()
-    rxx, ryy, rxy, rzz, around = zeros(), zeros(), zeros(), zeros(), zeros()
+    rxx, ryy, rxy, rzz, around, crowd = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
     k, end = near.start[i], near.split[i]
     while k < end:  # a particle stands for the missing end of its row: it does nothing to itself
         xj, yj, vxj, vyj, volume, mass, sound_j, shear_rate_j = gather_rows(record, near.partner, k, end, i)
         txx_j, txy_j, tyx_j, tyy_j, gxx_j, gxy_j, gyx_j, gyy_j = gather_rows(record, near.partner, k, end, i, TXX)
         xx_j, yy_j, xy_j, zz_j = gather_four(stress, near.partner, k, end, i)
-        k += LANES
         dx, dy = nearest_image(xi - xj, near.period_x, turns_x), nearest_image(yi - yj, near.period_y, turns_y)
         distance2 = dx * dx + dy * dy
         slope = scale * slope_shape(kind, sqrt(distance2) * inverse_h)
+        crowd -= mask_tail(slope, k, end)
+        k += LANES
         vx = vxi - vxj - linear * ((gxx + gxx_j) * dx + (gxy + gxy_j) * dy)
         vy = vyi - vyj - linear * ((gyx + gyx_j) * dx + (gyy + gyy_j) * dy)
         approach = minimum(vx * dx + vy * dy, most)
@@ -151,7 +155,7 @@ def soil_forces(i, record, stress, near, choices):
         wy += close * dy
     diffused = (reduce_add(rxx), reduce_add(ryy), reduce_add(rxy), reduce_add(rzz))
     pushed = (reduce_add(bx), reduce_add(by), reduce_add(wx), reduce_add(wy))
-    return pushed, diffused, reduce_add(grown), 0.5 * reduce_add(around)
+    return pushed, diffused, reduce_add(grown), 0.5 * reduce_add(around), reduce_add(crowd)
 
 
 @inline

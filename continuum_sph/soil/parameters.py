@@ -66,7 +66,9 @@ class SoilLaw:
         C2, the spline has less), and would swing ever wider beyond 2: σ_zz does, which no strength bounds.  It may
         vanish in a step.  Of a particle's volume half at most is then exchanged, spacing² Σ -(1/r) W' being the
         integral 2π W(0): volumes stay between those around, so above zero, up to twice the lattice's particles in a
-        place, and their noise decays up to four times.  What diffuses by sound is part of it.
+        place, and their noise decays up to four times.  A step may be `flow.LASTING` = 1.25 of that before it, so where
+        the sum is more than `stress.CROWDED` = 2/1.25 of the integral, the bound is as much lower.  What diffuses by
+        sound is part of it.
         """
         left = 1.0 - FALL * self.courant * self.sound_diffusion
         return max(0.0, left) / (FALL * self.diffusion) if self.diffusion > 0.0 else float("inf")

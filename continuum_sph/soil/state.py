@@ -35,7 +35,7 @@ class Soil:
     force: Floats = field(init=False)  # (soil, 2) N/m, of other layers
     acceleration: Floats = field(init=False)  # (soil, 2) m/s²
     drift: Floats = field(init=False)  # (soil, 2) m/s, what keeps particles apart adds to the velocity of moving
-    spread: Floats = field(init=False)  # (soil, 6) of `momentum`: diffusion of stress, of volume; mean p around less p
+    spread: Floats = field(init=False)  # (soil, 7) of `momentum`: diffusion of stress, of volume; mean p around less p; crowd
     separation_strain: Floats = field(init=False)
     plastic_shear: Floats = field(init=False)
     record: Floats = field(init=False)  # (n, 16) all that a pair reads of a partner
@@ -51,7 +51,7 @@ class Soil:
         shapes = {"x": (n, 2), "v": (n, 2), "mass": (n,), "density": (self.soil,), "stress": (n, 4), "material": (n,)}
         require_arrays("soil", vars(self), shapes)
         self.force, self.acceleration, self.drift = (np.zeros((self.soil, 2)) for _ in range(3))
-        self.spread = np.zeros((self.soil, 6))
+        self.spread = np.zeros((self.soil, 7))
         self.separation_strain, self.plastic_shear = np.zeros(self.soil), np.zeros(self.soil)
         self.record, self.facing, self.length = np.zeros((n, 16)), np.zeros((n, 4)), np.zeros(n)
         self.matrix = np.tile([1.0, 0.0, 1.0, 0.0, 0.0], (self.soil, 1))

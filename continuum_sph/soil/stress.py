@@ -18,9 +18,12 @@ from continuum_sph.soil.plasticity import new_stress
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, SHEAR_RATE, SOUND_OVER_DENSITY, TXX, TXY, TYX, TYY, VOLUME
 from porescale.common.compiled.jit import parallel_kernel, prange
 
-XX, YY, XY, ZZ, GROWN, EXCESS = range(6)
-"""Columns of a stress, Pa, compression positive; of what diffuses, that of the volume, m²/s; and the mean p of the
-surroundings less p, Pa."""
+XX, YY, XY, ZZ, GROWN, EXCESS, CROWD = range(7)
+"""Columns of a stress, Pa, compression positive; of what diffuses, that of the volume, m²/s; the mean p of the
+surroundings less p, Pa; and how crowded a place is: Σ -(1/r) W' spacing² of its partners over the integral."""
+
+CROWDED = 1.6
+"""A place's `CROWD` up to which diffusion is bounded by the step alone, see `parameters.SoilLaw.most`."""
 
 
 class Straining(NamedTuple):
@@ -38,8 +41,8 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``separation_strain``, ``plastic_shear``
     (soil,) and in ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
 
-    material, table, matrix: see `state.Soil`;  spread (soil, 6) Pa/s, m²/s and Pa: diffusion of stress and volume,
-    and mean p of the surroundings less p, of `accelerate`;  straining: see `Straining`.  Returns the largest c², m²/s²;
+    material, table, matrix: see `state.Soil`;  spread (soil, 7) Pa/s, m²/s, Pa and 1: diffusion of stress and
+    volume, mean p of the surroundings less p, and crowd, of `accelerate`;  straining: see `Straining`.  Returns the largest c², m²/s²;
     a maximum is exact in any order.
     """
     step, spreading, spin, most = straining.step, straining.spreading, straining.spin, straining.most
@@ -80,7 +83,8 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
         kyy = matrix[i, 2]
         record[i, SOUND_OVER_DENSITY] = np.sqrt(speed2) / density[i]
         shearing = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
-        record[i, SHEAR_RATE] = shearing if shearing * step <= most else most / step
+        bound = most / max(1.0, spread[i, CROWD] / CROWDED)
+        record[i, SHEAR_RATE] = shearing if shearing * step <= bound else bound / step
         turn = (xx - yy) * matrix[i, 3] - xy * matrix[i, 4]
         record[i, TXX] = xx * kxx + xy * kxy
         record[i, TXY] = xx * kxy + xy * kyy - turn

@@ -6,7 +6,7 @@ import pytest
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.soil import flow as flow_module
 from continuum_sph.soil.state import GXX, SHEAR_RATE, VOLUME
-from continuum_sph.soil.stress import GROWN, YY, Straining, deform
+from continuum_sph.soil.stress import CROWD, GROWN, YY, Straining, deform
 from continuum_sph.validation.soil.setups import RATIO, body
 from continuum_sph.water.smoothing import Smoothing, kernel_slope
 from porescale.common.core.errors import InputError
@@ -87,32 +87,35 @@ def test_diffusion_that_follows_any_shear_swings_ever_wider():  # the twin that 
     assert swing_of_stress(float("inf")) > 10.0
 
 
-def exchanged(crowd, seed=3):
-    """Volumes (60,) of random size before and after the exchange of one step, sheared far beyond what it may follow.
+def exchanged(crowd, known=True, seed=3):
+    """Volumes (60,) of random size before and after the exchange of one step, as much longer than the last as one may
+    be, sheared far beyond what it may follow.
 
-    crowd : particles where a lattice has one.
+    crowd : particles where a lattice has one;  known : the bound goes by it.
     """
     flow = body(square_lattice((-0.5, -0.3), (0.5, 0.3), SPACING) / crowd**0.5, SPACING, ELASTIC, (0.0, 0.0, 0.0, 0.0))
     soil, step = flow.soil, 1e-3
     soil.density *= np.random.default_rng(seed).uniform(0.5, 1.5, soil.soil)
     soil.v[:, 0] = 1e4 * soil.x[:, 1]
     flow.begin(0.0)
+    flow.push()
+    soil.spread[:, CROWD] *= known
     flow.strain(step)
     flow.push()
-    assert soil.record[:, SHEAR_RATE].max() == pytest.approx(flow.law.most / step, rel=1e-15)
+    assert soil.record[:, SHEAR_RATE].max() <= flow.law.most / step * (1.0 + 4.0 * EPS)
     before = soil.record[: soil.soil, VOLUME].copy()
-    return before, before + step * soil.spread[:, GROWN]
+    return before, before + flow_module.LASTING * step * soil.spread[:, GROWN]
 
 
-@pytest.mark.parametrize("crowd", [1, 2])
+@pytest.mark.parametrize("crowd", [1, 2, 4, 8])
 def test_volumes_stay_between_those_around_however_fast_soil_is_sheared(crowd):
     before, after = exchanged(crowd)
     assert before.min() < after.min() < after.max() < before.max()
     assert after.sum() == pytest.approx(before.sum(), rel=60 * EPS)
 
 
-def test_volumes_of_soil_packed_four_times_as_dense_calm_down_no_more():  # the twin that must fail
-    before, after = exchanged(8)
+def test_volumes_of_crowded_soil_swing_where_the_bound_does_not_know_it():  # the twin that must fail
+    before, after = exchanged(8, known=False)
     assert after.min() < 0.5 * before.min()
 
 
