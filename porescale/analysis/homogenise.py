@@ -136,7 +136,7 @@ def specimen(scene: Scene) -> dict[str, Any]:
     end = section.strain / rate + 0.5 * ramp
     grains = {
         "diameter": packing.diameter, "size_spread": packing.size_spread, "seed": packing.seed,
-        "settling_friction": packing.settling_friction,
+        "settling_friction": packing.settling_friction if packing.gives("settling_friction") else None,
         "settling_rolling_friction": packing.settling_rolling_friction, "material": packing.material,
         "log_spread": packing.log_spread,
         "grading": [list(pair) for pair in packing.grading], "packing_fraction": SOLID,

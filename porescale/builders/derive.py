@@ -38,6 +38,9 @@ from porescale.scene.lattice import is_whole
 
 MANY = 1e6
 """Contact steps in a step of the fluid beyond which a unit is probably wrong."""
+ROUNDED = 1e-9
+"""By what share a contact step is off one that goes into a step of the fluid a whole number of times, and counts as it:
+numbers of a scene are written with some ten digits."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +108,11 @@ def derive(scene: Scene) -> Derived:
         if frames and scales:
             safe = min(safe, longest_step(frames, speed))
         step, steps = _contact_step(scene.contact, safe, limit, scales, faults)
+        if scales and (scene.contact.step or 0.0) > scales.step * (1 + ROUNDED):
+            warnings.append(
+                f"contact.step = {scene.contact.step:.6g} s is longer than a step of the fluid, in which the grains do"
+                f" at least one: {step:.6g} s is used; leave contact.step out"
+            )
         if step > travel:
             warnings.append(
                 f"contact.step = {step:.3g} s: at {speed:.3g} m/s, which is to be expected, a grain moves more than "
@@ -220,7 +228,7 @@ def _contact_step(
 ) -> tuple[float, int]:
     """Contact step (s) and their number per model step."""
     wanted = contact.step or safe
-    steps = 1 if scales is None else max(1, math.ceil(scales.step / wanted * (1 - 1e-9)))
+    steps = 1 if scales is None else max(1, math.ceil(scales.step / wanted * (1 - ROUNDED)))
     step = wanted if scales is None else scales.step / steps
     if steps > MANY:
         problem = f"takes {steps:.3g} contact steps of {wanted:.3g} s"

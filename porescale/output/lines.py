@@ -49,14 +49,15 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
 def profiles(run: Run, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
     """Columns of lines.csv for ``lines``, tables as [[line]] has them, at every snapshot.
 
-    Lines are numbered from 0 in their order.  Velocity is interpolated, that of the solid in it; pressure over the
-    fluid share of cells: nan inside of grains.
+    Lines are numbered from 0 in their order.  Velocity is interpolated, that of the solid in it, at a wall that of the
+    wall; pressure over the fluid share of cells: nan inside of grains.
     """
     scene: dict[str, Any] = run.card["scene"]
     grid = run.snapshot(0).grids["fields"]
     ny, nx = grid.shape
     kinds = (boundaries().get(scene["domain"][side]["kind"]) for side in ("left", "bottom"))  # None: since gone
     periodic_x, periodic_y = (kind is not None and kind.periodic for kind in kinds)
+    known_x, known_y = known_at_sides(scene["domain"])
     ratio = (scene.get("grains") or {}).get("hydraulic_radius_ratio")
     samplers = [
         Sampler(along(line["start"], line["end"], line["points"]), (nx, ny), grid.spacing[0], (periodic_x, periodic_y))
@@ -69,10 +70,23 @@ def profiles(run: Run, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[Any
         for number, at in enumerate(samplers):
             x, y = at.points.T
             columns = (
-                np.hypot(x - x[0], y - y[0]), x, y, at.of(cells["velocity"][..., 0]), at.of(cells["velocity"][..., 1]),
+                np.hypot(x - x[0], y - y[0]), x, y, at.to_sides(cells["velocity"][..., 0], known_x, solid),
+                at.to_sides(cells["velocity"][..., 1], known_y, solid),
                 at.in_fluid(cells["pressure"], solid), at.of(solid),
             )  # fmt: skip
             for row in np.stack(columns, axis=1).tolist():
                 rows.append([float(snapshot.time), number, *row, *([ratio] if ratio else [])])
     names = [*COLUMNS, LAMBDA] if ratio else COLUMNS
     return {name: list(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
+
+
+def known_at_sides(domain: Mapping[str, Mapping[str, Any]]) -> tuple[list[float | None], list[float | None]]:
+    """Velocity x and y (m/s) of the fluid at the left, right, bottom and top side: that of a wall, 0 across a line
+    of symmetry; None where it is that beside it.  ``domain``: tables of the sides as [domain] has them."""
+    x: list[float | None] = []
+    y: list[float | None] = []
+    for name, (across, along_it) in {"left": (x, y), "right": (x, y), "bottom": (y, x), "top": (y, x)}.items():
+        kind = boundaries().get(domain[name]["kind"])  # None: since gone
+        across.append(0.0 if kind is not None and kind.closed else None)
+        along_it.append(domain[name].get("speed") or 0.0 if kind is not None and kind.no_slip else None)
+    return x, y

@@ -1,5 +1,7 @@
 """Values of the fluid at points between the centres of cells."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -16,7 +18,8 @@ FLAT = 1e-9
 class Sampler:
     """Bilinear interpolation at fixed ``points`` (n, 2) m of a lattice of ``cells`` (nx, ny) with ``spacing``, m.
 
-    Across a periodic side it goes on with the cells of the other; at any other side the centre next to it counts.
+    Across a periodic side it goes on with the cells of the other.  Any other side lies half a cell outside the centres
+    next to it; between them what ``of`` gives is that of the centre, ``to_sides`` and ``in_fluid`` go on to the side.
     """
 
     def __init__(
@@ -24,9 +27,12 @@ class Sampler:
     ) -> None:
         self.points = np.asarray(points, float).reshape(-1, 2)
         places = self.points / spacing - 0.5  # in cells, from the first centre
-        low, share = [], []
+        low, share, self._beyond = [], [], []
         for axis in range(2):
             at, last = places[:, axis], cells[axis] - 1
+            self._beyond += (
+                [np.zeros_like(at)] * 2 if periodic[axis] else [np.clip(it, 0, 0.5) for it in (-at, at - last)]
+            )
             at = at if periodic[axis] else np.clip(at, 0, last)
             below = np.floor(at)
             if not periodic[axis]:
@@ -38,10 +44,27 @@ class Sampler:
         self._index = np.stack([((y + j) % ny) * nx + (x + i) % nx for j in (0, 1) for i in (0, 1)])  # (4, n)
         self._weight = np.stack([(sy if j else 1 - sy) * (sx if i else 1 - sx) for j in (0, 1) for i in (0, 1)])
         self._low, self._share, self._cells, self._periodic = np.array((x, y)), np.array((sx, sy)), cells, periodic
+        centres = (np.array((x + sx, y + sy)).T + 0.5) * spacing  # of what is beyond the outermost ones
+        self._inner = []  # per side: its points, how far beyond, and as many points a cell further in
+        for side, beyond in enumerate(self._beyond):
+            which = np.flatnonzero(beyond > NOTHING)
+            if len(which) and cells[side // 2] > 1:
+                inwards = centres[which]
+                inwards[:, side // 2] += -spacing if side % 2 else spacing
+                self._inner.append((which, beyond[which], Sampler(inwards, cells, spacing, periodic)))
 
     def of(self, values: AnyArray) -> AnyArray:
         """Interpolated ``values`` (ny, nx), (n,)."""
         return np.asarray((values.reshape(-1)[self._index] * self._weight).sum(axis=0))
+
+    def to_sides(self, values: AnyArray, known: Sequence[float | None], solid: AnyArray) -> AnyArray:
+        """As ``of``; from the outermost centres linear up to what is ``known`` of fluid at the left, right, bottom and
+        top side (None: as at the centre), and by that share of it that is not ``solid`` (ny, nx)."""
+        found, fluid = self.of(values), 1 - self.of(solid)
+        for beyond, value in zip(self._beyond, known, strict=True):
+            if value is not None:
+                found = np.where(beyond > 0, found + 2 * beyond * fluid * (value - found), found)
+        return np.asarray(found)
 
     def in_fluid(self, values: AnyArray, solid: AnyArray) -> AnyArray:
         """``values`` (ny, nx) of the fluid, (n,), with the ``solid`` fraction (ny, nx) of cells.
@@ -49,7 +72,7 @@ class Sampler:
         Bilinear where all four cells are fluid.  At a surface, that of the plane through the open ones of the 16 cells
         around the point which are joined to its four (least squares): exact for a plane, so of second order.  Where
         none of the four is open, their mean by fluid share.  Not a number where all four are solid: inside grains there
-        is none.
+        is none.  Between the outermost centres and a side it goes on with the slope of the last cell, if all is fluid.
         """
         covered = solid.reshape(-1)[self._index]
         weight = self._weight * np.clip(1 - covered, 0, 1)
@@ -60,7 +83,16 @@ class Sampler:
         edge = np.flatnonzero(((covered > NOTHING) & counts).any(0) & ((covered < OPEN) & counts).any(0))
         if len(edge):
             value[edge] = self._plane(edge, values, solid)
-        return np.asarray(value)
+        found = value.copy()
+        for which, beyond, inner in self._inner:
+            clear = self._clear(solid)[which] & inner._clear(solid)
+            slope = np.where(clear, value[which] - inner.of(values), 0.0)
+            found[which] += beyond * slope
+        return np.asarray(found)
+
+    def _clear(self, solid: AnyArray) -> AnyArray:
+        """Whether there is no solid in what each point reads, (n,)."""
+        return np.asarray(((solid.reshape(-1)[self._index] <= NOTHING) | (self._weight <= NOTHING)).all(axis=0))
 
     def _plane(self, which: AnyArray, values: AnyArray, solid: AnyArray) -> AnyArray:
         """Least squares over 4 x 4 cells about each point of the numbers ``which``, each with an open cell of four.

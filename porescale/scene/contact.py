@@ -99,7 +99,7 @@ class Contact(Touch):
         default="force", description="a contact ends where its force vanishes, or where its overlap does"
     )
     step: float | None = quantity(
-        "s", None, ge=1e-15, le=1e3, help="contact step (default: from the contact's stability)"
+        "s", None, ge=1e-15, le=1e3, help="contact step, in fluid at most this (default: from the contact's stability)"
     )
     deepest: float = quantity(
         "", 0.02, gt=0, le=0.3, help='overlap over radius that the step of "hertz" and own laws allows for'

@@ -36,7 +36,10 @@ class Packing(Section):
     packing_fraction: float = quantity("", 0.81, ge=1e-3, le=0.84, help="grain area over the rectangle's area")
     seed: int = pydantic.Field(1, ge=0, description="seed of the random placement")
     settle: bool = pydantic.Field(True, description="let the grains settle dry before the run")
-    settling_friction: float = quantity("", 0.3, **FRICTION, help="friction while preparing: little packs densely")
+    settling_friction: float = quantity(
+        "", 0.3, **FRICTION,
+        help="friction while preparing: little packs densely; compressing needs springs along contacts for it",
+    )  # fmt: skip
     settling_rolling_friction: float = quantity(
         "", 0.0, **FRICTION, help="friction of rolling while preparing, for looser packings; 0: that of the contact law"
     )
@@ -65,6 +68,10 @@ class Packing(Section):
             "required": needed,
             "anyOf": [{"required": [key]} for key in ("diameter", "grading", "sizes")],
         }
+
+    def gives(self, key: str) -> bool:
+        """Whether someone wrote ``key``; not so in the full table of a run card, which has all keys and its Nones."""
+        return key in self.model_fields_set and all(getattr(self, it) is not None for it in self.model_fields_set)
 
     def _faults(self) -> list[Fault]:
         try:

@@ -47,6 +47,41 @@ def test_a_point_beyond_the_outermost_centres_reads_the_wall_cell_or_the_other_s
     assert Sampler([(0.0, 0.5), (4.0, 0.5)], (4, 3), 1.0, (True, False)).of(values).tolist() == [1.5, 1.5]
 
 
+def test_velocity_goes_on_to_that_of_a_wall_half_a_cell_outside_the_first_centres():
+    y, x = np.mgrid[:5, :6] + 0.5
+    points = [(0.0, 2.2), (0.2, 2.2), (6.0, 2.5), (3.1, 0.0), (3.1, 0.4), (0.1, 0.2), (3.1, 4.9), (2.7, 2.2)]
+    read, open_water = Sampler(points, (6, 5), 1.0), np.zeros((5, 6))
+    walls = [plane(0.0, 2.2), None, 7.0, None]
+    found = read.to_sides(plane(x, y), walls, open_water)
+    # At the wall what the wall has, linear up to the first centre; beside it, and at a side that has none, as before.
+    beside = plane(3.1, 0.5)
+    expected = [plane(*points[0]), plane(*points[1]), plane(5.5, 2.5), 7.0, 7.0 + 0.8 * (beside - 7.0)]
+    corner = plane(0.0, 2.2) + 0.2 * (plane(0.5, 0.5) - plane(0.0, 2.2))
+    expected += [7.0 + 0.4 * (corner - 7.0), plane(3.1, 4.5), plane(2.7, 2.2)]
+    assert found == pytest.approx(expected, rel=1e-14)  # a few products and sums of numbers of order ten
+    joined = Sampler(points, (6, 5), 1.0, (True, True))  # sides that are none
+    assert joined.to_sides(plane(x, y), walls, open_water).tolist() == joined.of(plane(x, y)).tolist()
+    # In what is solid at a wall it is the solid's, in half of it half way.
+    solid = np.zeros((5, 6))
+    solid[:, 0] = 1.0
+    assert read.to_sides(plane(x, y), walls, solid)[0] == read.of(plane(x, y))[0]
+    assert read.to_sides(plane(x, y), walls, 0.5 * solid)[0] == pytest.approx(plane(0.25, 2.2), rel=1e-14)
+
+
+def test_pressure_goes_on_to_a_side_with_its_slope():
+    y, x = np.mgrid[:5, :6] + 0.5
+    points = [(0.0, 2.2), (6.0, 2.5), (3.1, 0.1), (6.0, 5.0), (2.7, 2.2)]
+    read, solid = Sampler(points, (6, 5), 1.0), np.zeros((5, 6))
+    # A dozen products and sums of numbers of order ten.
+    assert read.in_fluid(plane(x, y), solid) == pytest.approx([plane(*it) for it in points], rel=1e-14)
+    assert abs(plane(0.5, 2.2) - plane(0.0, 2.2)) > 1.0  # the check that must fail: the centre's
+    # Where solid stands a cell away there is no slope to be had; the other axis keeps its own.
+    solid[:, 1], solid[3, :] = 1.0, 1.0
+    assert read.in_fluid(np.where(solid > 0, -1000.0, plane(x, y)), solid)[0] == pytest.approx(
+        plane(0.5, 2.2), abs=1e-7
+    )
+
+
 def test_pressure_is_that_of_the_fluid_share_and_none_inside_solid():
     solid, values = np.zeros((3, 4)), np.full((3, 4), 7.0)
     solid[:, 2:] = 1.0

@@ -14,8 +14,10 @@ from porescale.builders.build import build
 from porescale.common.core.errors import InputError, PorescaleWarning
 from porescale.common.record.drive import drive
 from porescale.common.schema.sections import scene_as_dict
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.scene.measures.probe import Probe
 from porescale.scene.measures.region import Region
+from porescale.validation.lbm.channels import steady_steps
 from tests.reference.scenes import column as bed
 from tests.reference.scenes import dry, water
 
@@ -83,6 +85,57 @@ def test_lines_are_those_that_show_writes(wet):
     assert len(table["time (s)"]) == 5 * 5
     assert table["velocity x (m/s)"][-3] == pytest.approx(wet[-1]["velocity"][19:21, 29:31, 0].mean(), rel=1e-6)
     assert {name: list(column) for name, column in table.items()} == profiles(wet, LINE)
+
+
+def test_lines_and_probes_across_a_channel_are_the_exact_parabola_up_to_its_walls(tmp_path):
+    # Ten cells of h between two walls; at magic 3/16 the parabola solves the discrete equations exactly.
+    rows, h, step, tau = 10, 2e-4, 4e-5, 1.0
+    height, viscosity = rows * h, (tau - 0.5) / 3 * h**2 / step
+    force = 1000 * 8 * viscosity * 0.01 / height**2  # peak 1 cm/s
+    steps = steady_steps(rows, (tau - 0.5) / 3, MAGIC_MIDWAY_WALL)
+    at = np.linspace(0.0, height, 4 * rows + 1)  # walls, centres, and halves between them
+    points = [{"name": f"p{k}", "x": 0.0004, "y": float(it)} for k, it in enumerate(at)]
+    line = {"start": [0.0004, 0.0], "end": [0.0004, height], "points": len(at)}
+    scene = water(
+        domain__width=4 * h, domain__height=height, domain__top="wall", fluid__viscosity=viscosity,
+        fluid__body_force=[force, 0.0], time__end=steps * step, probe=points, line=[line],
+    )  # fmt: skip
+    run = driven(scene, tmp_path)
+    table, row = run.measure(line=[line])["lines"], run.table("probes")
+    parabola = 0.01 * 4 * at * (height - at) / height**2
+    # Linear in pieces between nodes of the parabola: below it by u''/2 (y - a)(b - y), a and b at wall or centre.
+    nodes = np.array([0.0, *((np.arange(rows) + 0.5) * h), height])
+    below = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, rows)
+    exact = parabola - 0.5 * 0.08 / height**2 * (at - nodes[below]) * (nodes[below + 1] - at)
+    # A step rounds by eps over the Mach number of 1e-3 and is remembered for rows²/viscosity steps (poiseuille of
+    # validation/lbm/channels.py); what is stored is off by EPS of the peak.
+    bound = 0.01 * np.finfo(float).eps / 1e-3 * rows**2 / ((tau - 0.5) / 3)
+    probed = np.array([row[f"p{k} velocity x (m/s)"][-1] for k in range(len(at))])
+    assert np.abs(probed - exact).max() < bound
+    found = np.array(table["velocity x (m/s)"])[-len(at) :]
+    assert np.abs(found - exact).max() < bound + EPS * 0.01
+    assert found[[0, -1]].tolist() == [0.0, 0.0]
+    # The check that must fail: the velocity of the first centre, h/2 away.
+    assert parabola[2] > 0.0019
+    # Pressure across it, at the walls too, is rho g times depth.  Two stored numbers count 3/2 and 1/2 there; a step of
+    # the lattice rounds by eps of rho c².
+    still, rounded = 1000 * 9.81 * (height - at), np.finfo(float).eps * 1000 * (h / step) ** 2 / 3 * steps
+    assert np.abs(np.array(table["pressure (Pa)"])[-len(at) :] - still).max() < 2 * EPS * still.max() + rounded
+    assert 1000 * 9.81 * h / 2 > 1e5 * EPS * still.max()  # the check that must fail: that of the first centre
+
+
+def test_lines_end_with_the_velocity_of_the_sides(tmp_path):
+    sides = {"left": "wall", "right": {"kind": "wall", "speed": 0.02}, "top": {"kind": "wall", "speed": -0.01}}
+    level = {"start": [0.0, 0.001], "end": [0.002, 0.001], "points": 3}
+    upright = {"start": [0.001, 0.0], "end": [0.001, 0.002], "points": 3}
+    size = {"domain__width": 0.002, "domain__height": 0.002, "domain__bottom": "slip"}
+    scene = water(**{f"domain__{name}": it for name, it in sides.items()}, **size, time__end=0.004,
+                  line=[level, upright], fluid__body_force=None)  # fmt: skip
+    table = driven(scene, tmp_path).measure(line=[level, upright])["lines"]
+    x, y = (np.array(table[f"velocity {axis} (m/s)"])[-6:] for axis in "xy")
+    assert (y[0], y[2], x[5]) == (0.0, 0.02, -0.01)
+    assert (x[0], x[2], y[3], y[5]) == (0.0, 0.0, 0.0, 0.0)
+    assert x[3] != 0.0  # along a line of symmetry the fluid slides
 
 
 def test_regions_are_those_of_the_run(heap):

@@ -17,7 +17,7 @@ from porescale.dem.measures.porosity import porosity, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.prepare.compaction import mean_stress, write_packing
 from tests.reference.grading import percent_finer
-from tests.reference.scenes import dry, table
+from tests.reference.scenes import dry, refusals, table
 
 CURVE = [[0.0003, 0.0], [0.0006, 40.0], [0.0009, 100.0]]
 BOX = {"left": 0.0, "width": 0.012, "height": 0.008}
@@ -168,6 +168,40 @@ def test_a_packing_kept_under_pressure_is_taken_up_again(tmp_path):
 def test_packings_that_contradict_themselves_are_refused(keys, said):
     with pytest.raises(InputError, match=said):
         derive(packed(**keys))
+
+
+SMOOTH = {"contact__tangential_stiffness": 0.0, "contact__friction": 0.0}
+
+
+@pytest.mark.parametrize("key", ["settling_friction", "settling_rolling_friction"])
+def test_friction_of_compressing_without_a_spring_along_contacts_has_no_effect_and_is_refused(key):
+    def smooth(**more: Any) -> Any:
+        given = {**BOX, "pressure": 500, "diameter": 0.001, "settle": None}
+        changes = {f"grains__packing__{name}": value for name, value in given.items()}
+        return dry(**ROUND, **{"gravity": [0.0, 0.0], **SMOOTH, **changes, **more})
+
+    given = {f"grains__packing__{key}": 0.3}
+    line = f"grains.packing.{key} = 0.3: has no effect on what is compressed: contacts have no tangential_stiffness; "
+    line += "give contact.tangential_stiffness, half of the normal one say, or leave it out"
+    assert refusals(lambda: derive(smooth(**given))) == [line]
+    derive(smooth(**given, contact__tangential_stiffness=1e5))
+    derive(smooth(**{f"grains__packing__{key}": 0.0}))
+    gate = {"x": 0.008, "opens_at": 0.01, "lift_speed": 0.4}
+    derive(dry(gate=gate, grains__packing__settle=True, **SMOOTH, **given))  # settling has a law of its own
+    plain = smooth()  # by default nothing is claimed, nor by the card of such a run, which has all keys
+    derive(plain)
+    assert derive(validate(Scene, scene_as_dict(plain))).grain_count == derive(plain).grain_count
+
+
+def test_friction_of_compressing_acts_on_a_dashpot_along_contacts_and_by_material():
+    keys = {"grains__packing__settling_friction": 0.3, "contact__tangential_damping": 1.0}
+    box = {f"grains__packing__{name}": value for name, value in (BOX | {"pressure": 500, "settle": None}).items()}
+    derive(dry(**ROUND, **SMOOTH, **box, **keys))
+    materials = [{"name": "smooth"}, {"name": "rough", "tangential_stiffness": 1e5}]
+    bare = {**ROUND, **SMOOTH, **box, "material": materials, "grains__packing__settling_friction": 0.3}
+    derive(dry(**bare, grains__packing__material="rough"))
+    (line,) = refusals(lambda: derive(dry(**bare, grains__packing__material="smooth")))
+    assert line.startswith("grains.packing.settling_friction = 0.3: has no effect")
 
 
 def test_a_section_of_circles_that_is_wrong_is_named():

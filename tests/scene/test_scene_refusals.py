@@ -180,6 +180,18 @@ def test_a_contact_step_divides_the_fluid_step():
     assert derive(column(contact__step=2e-5)).contact_steps == 2
 
 
+def test_a_contact_step_longer_than_that_of_the_fluid_is_said_to_be_cut():
+    def said(step: float | None) -> list[str]:
+        return [it for it in derive(column(contact__step=step)).warnings if it.startswith("contact.step")]
+
+    cut = derive(column(contact__step=9e-5))
+    assert (cut.contact_steps, cut.contact_step) == (1, 4e-5)
+    line = "contact.step = 9e-05 s is longer than a step of the fluid, in which the grains do at least one: "
+    assert said(9e-5) == [line + "4e-05 s is used; leave contact.step out"]
+    assert said(4e-5 * (1 + 1e-6)) != []
+    assert said(4e-5 * (1 + 1e-12)) == said(4e-5) == said(1.9e-5) == said(None) == []  # as long, shorter, none
+
+
 def test_a_mach_number_above_a_tenth_warns_and_above_three_tenths_is_refused():
     # The speed to expect is given: a grain that starts with it.  The sound speed is 5/sqrt(3) m/s.
     def moving(speed: float) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from porescale.common.core.types import AnyArray
 from porescale.common.record.part import Part
 from porescale.common.schema.names import names_of
 from porescale.coupling.step import Coupled
+from porescale.output.lines import known_at_sides
 from porescale.output.rectangle_mean import RectangleMean
 from porescale.output.sample import Sampler, midpoints
 from porescale.scene.measures.line import Flux
@@ -31,6 +32,8 @@ class FlowInstruments(Part):
         names = names_of(scene.probe, "probe")
         points = [(name, it) for name, it in zip(names, scene.probe, strict=True) if it.corners is None]
         self.probes = Sampler([(it.x, it.y) for _, it in points], *grid) if points else None
+        sides = {name: {"kind": it.kind, "speed": it.speed} for name, it in scene.domain.sides.items()}
+        self.at_sides = known_at_sides(sides)
         self.probe_names = [name for name, _ in points]
         self.means = {
             name: RectangleMean(*it.corners, *grid[:2])
@@ -66,8 +69,8 @@ class FlowInstruments(Part):
         excess, ux, uy, solid = fields
         p, u, v = (
             probes.in_fluid(total_pressure(self.gravity, self.fluid.scales, excess), solid),
-            probes.of(ux),
-            probes.of(uy),
+            probes.to_sides(ux, self.at_sides[0], solid),
+            probes.to_sides(uy, self.at_sides[1], solid),
         )
         row = {}
         for k, name in enumerate(self.probe_names):

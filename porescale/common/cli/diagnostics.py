@@ -1,6 +1,7 @@
 """Log lines and warnings of the library, which a command prints and Python can silence and catch."""
 
 import logging
+import re
 import sys
 import warnings
 from collections.abc import Iterator
@@ -11,6 +12,9 @@ from porescale.common.core.errors import PorescaleWarning
 
 LOGGERS = ("porescale", "continuum_sph")
 """Above all loggers of the packages: each module has its own, by its name."""
+
+LACKING = re.compile(r"Glyph (\d+) .*missing from font")
+"""What matplotlib warns of a character that the font of pictures lacks, by its number; it draws a box in its place."""
 
 
 class _Lines(logging.Handler):
@@ -23,8 +27,10 @@ class _Lines(logging.Handler):
 
 @contextmanager
 def printed() -> Iterator[None]:
-    """Print on stderr, in a line each, what the packages log from INFO on, and every `PorescaleWarning`."""
+    """Print on stderr, in a line each, what the packages log from INFO on, and every `PorescaleWarning`; at the end, in
+    one, the characters that pictures could not show."""
     handler, before = _Lines(logging.INFO), {}
+    lacking: dict[str, None] = {}
     with warnings.catch_warnings():
         usual = warnings.showwarning
 
@@ -32,6 +38,9 @@ def printed() -> Iterator[None]:
             """One line of our own warnings; others as ever."""
             if issubclass(category, PorescaleWarning):
                 print(f"warning: {message}", file=sys.stderr)
+            elif found := LACKING.match(str(message)):
+                sign = chr(int(found[1]))
+                lacking[sign if sign.isprintable() else f"U+{ord(sign):04X}"] = None
             else:
                 usual(message, category, *place, **more)
 
@@ -45,6 +54,8 @@ def printed() -> Iterator[None]:
         try:
             yield
         finally:
+            if lacking:
+                print(f"warning: pictures show a box for what their font lacks: {' '.join(lacking)}", file=sys.stderr)
             for logger, (level, propagate) in before.items():
                 logger.removeHandler(handler)
                 logger.setLevel(level)

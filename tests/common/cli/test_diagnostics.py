@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 from cyclopts import App
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from porescale.common.cli.application import main
 from porescale.common.core.errors import PorescaleWarning
@@ -38,6 +40,24 @@ def test_a_command_prints_one_line_each_and_leaves_all_as_it_was(capsys: pytest.
         logging.getLogger("porescale").level,
         warnings.showwarning,
     )
+
+
+def test_characters_that_the_font_of_pictures_lacks_are_said_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    made = App(result_action="return_value")
+
+    @made.command
+    def draw() -> int:
+        figure = Figure()
+        figure.text(0.1, 0.5, "測点 c, 測\u0007", parse_math=False)
+        for _ in range(2):
+            FigureCanvasAgg(figure).draw()
+        warnings.warn("of another library", UserWarning, stacklevel=1)
+        return 0
+
+    with pytest.warns(UserWarning, match="of another library") as others:
+        assert main(made, ["draw"]) == 0
+    assert len(others) == 1
+    assert capsys.readouterr().err == "warning: pictures show a box for what their font lacks: 測 点 U+0007\n"
 
 
 def test_python_silences_and_catches_them(capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture) -> None:
