@@ -66,6 +66,7 @@ def test_energy_needs_grains():
 
 ROLLS = {"rolling_friction": 0.1, "rolling_stiffness": 2e4, "rolling_damping": 0.01}
 HERTZ = {"law": "hertz", "young": 1e9, "poisson": 0.25, "restitution": 0.7, "friction": 0.4, "rolling_friction": 0.1}
+SLIDES = {"friction": 0.5, "tangential_stiffness": 1e5}
 SAND, STEEL = {"name": "sand"}, {"name": "steel", "density": 7800, "stiffness": 6e5, "friction": 0.2}
 
 
@@ -114,7 +115,7 @@ def two_materials(**more: Any) -> Scene:
     return loose(
         grain(0.002, 0.002), grain(0.004, 0.002, material="steel"), material=[SAND, STEEL],
         disc=[grain(0.006, 0.002)],
-        **{"contact__wall_material": "steel", "contact__tangential_stiffness": 0.0, "contact__pair": [pair], **more},
+        **{"contact__wall_material": "steel", "contact__pair": [pair], **more},
     )  # fmt: skip
 
 
@@ -151,7 +152,7 @@ def test_a_settled_packing_of_a_material_rests_on_walls_of_another():
     assert held == pytest.approx(weight, rel=1e-2)
 
 
-@pytest.mark.parametrize("contact", [HERTZ, {**ROLLS, "stiffness": 2e5, "restitution": 0.9, "friction": 0.5}])
+@pytest.mark.parametrize("contact", [HERTZ, {**ROLLS, "stiffness": 2e5, "restitution": 0.9, **SLIDES}])
 def test_a_run_with_another_law_is_taken_up_again_to_the_bit(contact):
     assert_same_bits(*resumed(dry(contact=contact, output__energy=True), 150, 150))
 
