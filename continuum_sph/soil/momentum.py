@@ -56,7 +56,17 @@ from continuum_sph.soil.stress import CROWD, EXCESS, GROWN, XX, XY, YY, ZZ
 from continuum_sph.water.bundles import image, inverse_period, nearest_image
 from continuum_sph.water.smoothing import kernel_kind, kernel_value, slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, gather_four, gather_rows, mask_tail, maximum, minimum, reduce_add, sqrt, zeros
+from porescale.common.compiled.simd import (
+    LANES,
+    gather_four,
+    gather_rows,
+    mask_tail,
+    maximum,
+    minimum,
+    reduce_add,
+    sqrt,
+    zeros,
+)
 
 SOFTENING = 0.01  # of h²: keeps the quotient finite when two centres coincide
 

@@ -42,8 +42,8 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
     (soil,) and in ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
 
     material, table, matrix: see `state.Soil`;  spread (soil, 7) Pa/s, m²/s, Pa and 1: diffusion of stress and
-    volume, mean p of the surroundings less p, and crowd, of `accelerate`;  straining: see `Straining`.  Returns the largest c², m²/s²;
-    a maximum is exact in any order.
+    volume, mean p of the surroundings less p, and crowd, of `accelerate`;  straining: see `Straining`.  Returns the
+    largest c², m²/s²; a maximum is exact in any order.
     """
     step, spreading, spin, most = straining.step, straining.spreading, straining.spin, straining.most
     max_sound2 = 0.0
