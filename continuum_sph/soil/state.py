@@ -35,7 +35,7 @@ class Soil:
     force: Floats = field(init=False)  # (soil, 2) N/m, of other layers
     acceleration: Floats = field(init=False)  # (soil, 2) m/s²
     drift: Floats = field(init=False)  # (soil, 2) m/s, what keeps particles apart adds to the velocity of moving
-    spread: Floats = field(init=False)  # (soil, 7) of `momentum`: diffusion of stress, of volume; p around less p; crowd
+    spread: Floats = field(init=False)  # (soil, 7) of `momentum`: diffusion of stress, volume; p around less p; crowd
     separation_strain: Floats = field(init=False)
     plastic_shear: Floats = field(init=False)
     record: Floats = field(init=False)  # (n, 16) all that a pair reads of a partner
