@@ -121,7 +121,7 @@ class Maker:
 
 def test_check_says_what_the_gpu_needs_and_that_its_gain_is_unknown(monkeypatch):
     monkeypatch.setattr(cuda, "makers_bandwidth", lambda: None)
-    # On a device other tests have left runs to learn from.
+    # Other tests have left runs to learn from.
     monkeypatch.setattr("porescale.common.duration.expected._runs", list)
     said = str(report(Scene(**ON_GPU)))
     assert "memory of the GPU" in said
@@ -132,6 +132,7 @@ def test_check_says_what_the_gpu_needs_and_that_its_gain_is_unknown(monkeypatch)
 
 
 def test_check_estimates_the_time_from_the_makers_figures(monkeypatch):
+    monkeypatch.setattr("porescale.common.duration.expected._runs", list)
     monkeypatch.setattr(cuda.cuda(), "get_current_device", Maker, raising=False)
     assert cuda.makers_bandwidth() == 2 * 1e9 * 512 / 8
     derived = derive(Scene(**ON_GPU))

@@ -176,11 +176,11 @@ def test_a_kept_run_without_a_key_of_today_says_which_value_is_as_before(kept_ru
         "numerics.noise_floor = 0.001: the run was begun by a version without it; set it to 0.0 to go on as that did, "
         "or start another run",
     ]
-    # As that it would go on, but soil of that version knows no mean pressure of its surroundings.
+    # As that it would go on, but soil of that version knows neither mean pressure nor crowd of its surroundings.
     as_before = [word for it in ("numerics.noise_floor=0", *AS_BEFORE) for word in ("--set", it)]
     assert run_of(CONTINUUM, run, run, *later, *as_before) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "does not fit this model (soil.flow.soil.spread: (32, 5) in place of (32, 6)); start the run anew" in line
+    assert "does not fit this model (soil.flow.soil.spread: (32, 5) in place of (32, 7)); start the run anew" in line
     assert {file: file.read_bytes() for file in run.iterdir() if file.name != ".lock"} == before
 
 
