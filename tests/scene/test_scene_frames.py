@@ -176,6 +176,19 @@ def test_bodies_of_segments_that_cannot_be_are_refused_by_name(changes, line):
     assert found[0].startswith(line), found
 
 
+@pytest.mark.parametrize(("overlap", "bears"), [(0.1, 0.25e-4), (0.02, 0.2e-4), (0.0, 0.0)])
+def test_a_body_may_start_pressed_into_a_side_by_as_much_as_into_another_body(overlap, bears):
+    # A share of its 1 mm, and a quarter of its thickness of 0.1 mm.
+    def at(depth: float) -> dict[str, Any]:
+        corners = [[5e-3, 1e-4 - depth], [6e-3, 1e-4 - depth], [6e-3, 11e-4 - depth], [5e-3, 11e-4 - depth]]
+        grains = {"density": 2500, "grain": [grain(2e-3, 2e-3)], "overlap": overlap}
+        return {"polygon": [{"corners": corners, "thickness": 1e-4}], "grains": grains, "domain": BOX}
+
+    derive(framed(**at(0.99 * bears)))
+    (line,) = lines(**at(1.01 * bears + 1e-9))
+    assert "reaches out of the box" in line
+
+
 def _built(**changes: Any) -> list[str]:
     """Refusals that only come with the grains."""
     return refusals(lambda: build(framed(grains={"grain": [grain(2e-3, 2e-3)]}, **changes)))
