@@ -14,7 +14,9 @@ from porescale.builders.initial.frames import placed_frames
 from porescale.builders.report import report
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError, Unstable
+from porescale.common.schema.names import names_of
 from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.output.features import features_of
 from tests.reference.scenes import grain, refusals, water
 from tests.reference.scenes_of_grains import BOX, assert_same_bits, framed, lines, loose, resumed
 
@@ -121,6 +123,18 @@ def test_a_run_with_a_tipping_container_goes_on_to_the_bit():
     assert turned == pytest.approx(30.0 * one.time, rel=1e-12)
     assert one.grains.discs.force[:30].any()  # they did meet
     assert validate(Scene, scene_as_dict(scene)) == scene
+
+
+def test_containers_and_walls_have_one_name_in_pictures_tables_and_messages():
+    trays = [{**FLOOR, "name": ""}, {**FLOOR, "chain": [[1e-3, 5e-3], [9e-3, 5e-3]]}]
+    scene = framed(container=trays, wall=[{"x": 5e-4, "y": 4e-3, "normal": [1, 0]}],
+                   grains={"density": 2500, "grain": [grain(3e-3, 3e-3)]})  # fmt: skip
+    names = names_of(scene.container, "container")
+    assert names == ["container 0", "floor"]
+    assert [it.name for it in placed_frames(scene)] == names
+    labels = [it.label for it in features_of(scene)]
+    assert set(names) < set(labels)
+    assert f"{names_of(scene.wall, 'wall')[0]}, stands" in labels
 
 
 def test_polygons_at_random_are_the_same_for_the_same_seed():
