@@ -144,5 +144,5 @@ def draw(made: Heap, found: dict[float, Floats], stiff: Floats) -> Figure:
 
 
 if __name__ == "__main__":
-    asked = options(__doc__ or "", HERE, packings=(int, 4, "packings for each friction"))
+    asked = options(__doc__ or "", HERE, packings=(int, 4, "packings for each friction", 1))
     raise SystemExit(conclude(HERE, *measure(asked.packings), asked.out))

@@ -232,7 +232,7 @@ def specimen(ax: Axes, test: Record) -> None:
 if __name__ == "__main__":
     asked = options(
         __doc__ or "", HERE, friction=(float, 0.5, "friction between discs"),
-        discs=(int, 0, "discs in a specimen, 0: as the scene says"), packings=(int, 4, "packings of each state"),
+        discs=(int, 0, "discs in a specimen, 0: as the scene says"), packings=(int, 4, "packings of each state", 1),
         seed=(int, 1, "of the first packing"),
     )  # fmt: skip
     raise SystemExit(conclude(HERE, *measure(asked.friction, asked.discs, asked.packings, asked.seed), asked.out))

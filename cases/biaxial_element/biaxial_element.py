@@ -21,7 +21,7 @@ KINDS = {
 
 def main() -> int:
     """Measure, compare with expected.toml, draw."""
-    words = options(__doc__ or "", HERE, steps=(int, 400, "steps of strain"))
+    words = options(__doc__ or "", HERE, steps=(int, 400, "steps of strain", 1))
     figure, (left, middle, right) = stage(3, 12.0, 3.8)
     numbers = {}
     for name, material in KINDS.items():

@@ -275,7 +275,7 @@ def film(record: Record, half: float, stem: Path) -> Path:
 
 
 if __name__ == "__main__":
-    asked = options(__doc__ or "", HERE, packings=(int, 4, "packings"), seed=(int, 1, "of the first"))
+    asked = options(__doc__ or "", HERE, packings=(int, 4, "packings", 1), seed=(int, 1, "of the first"))
     numbers, figure, found = measure(asked.packings, asked.seed, looks=90)
     print(f"film: {film(found.pushed, found.half, asked.out / 'pushed')}")
     raise SystemExit(conclude(HERE, numbers, figure, asked.out))

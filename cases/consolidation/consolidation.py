@@ -16,7 +16,7 @@ COLOURS = ("#1b4965", "#5b8fd0", "#2a9d8f", "#e8a33d", "#c8553d")
 
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
-    given = options(__doc__ or "", HERE, rows=(int, 30, "particles over the height"))
+    given = options(__doc__ or "", HERE, rows=(int, 30, "particles over the height", 1))
     layer = lab.Consolidation(rows=given.rows, permeability=1e-3, ratio=100.0)
     figure, axes = stage(2, 9.0, 4.2)
     worst, middle = 0.0, []

@@ -161,7 +161,7 @@ def deposit(ax: Axes, run: Collapse, ground: float, edge: float) -> None:
 
 if __name__ == "__main__":
     asked = options(
-        __doc__ or "", HERE, discs=(int, 1000, "discs in a column"), packings=(int, 1, "packings for each ratio"),
+        __doc__ or "", HERE, discs=(int, 1000, "discs in a column"), packings=(int, 1, "packings for each ratio", 1),
         friction=(float, FRICTION, "friction between discs and of the plane"),
     )  # fmt: skip
     raise SystemExit(conclude(HERE, *measure(asked.discs, asked.packings, asked.friction), asked.out))

@@ -189,6 +189,6 @@ def final(ax: Axes, it: Shearing) -> None:
 if __name__ == "__main__":
     asked = options(
         __doc__ or "", HERE, friction=(float, FRICTION, "friction between discs and at walls"),
-        packings=(int, 6, "packings for each size"), seed=(int, 1, "of the first packing"),
+        packings=(int, 6, "packings for each size", 1), seed=(int, 1, "of the first packing"),
     )  # fmt: skip
     raise SystemExit(conclude(HERE, *measure(asked.friction, asked.packings, asked.seed), asked.out))

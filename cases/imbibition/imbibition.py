@@ -46,7 +46,9 @@ def frames(given: infiltration.Imbibition, end: float) -> Iterator[NDArray[np.ui
 
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
-    given = options(__doc__ or "", HERE, rows=(int, 30, "particles over the soil"), film=(bool, False, "write a film"))
+    given = options(
+        __doc__ or "", HERE, rows=(int, 30, "particles over the soil", 1), film=(bool, False, "write a film")
+    )
     figure, axes = stage(2, 9.0, 4.6)
     trials = {
         "head 0.3 m": infiltration.Imbibition(rows=given.rows),

@@ -117,7 +117,7 @@ def judged(
 
 def main() -> int:
     """Run the cavity, film it, measure the film, judge and draw."""
-    given = options(__doc__ or "", HERE, pairs=(int, 3, "pairs of each film"))
+    given = options(__doc__ or "", HERE, pairs=(int, 3, "pairs of each film", 1))
     ps.set_threads(1)
     numbers, field, found = judged(cavity(given.out / "run"), given.pairs)
     return conclude(HERE, numbers, drawn(given.out / "run", field, found), given.out)

@@ -88,7 +88,7 @@ def their_bias(diameter: float, size: int = 256) -> Floats:
 def main() -> int:
     """Measure every row, print the table, judge it, draw it."""
     words = "write the table into README.md"
-    given = options(__doc__ or "", HERE, seeds=(int, 10, "pairs of every row"), readme=(bool, False, words))
+    given = options(__doc__ or "", HERE, seeds=(int, 10, "pairs of every row", 1), readme=(bool, False, words))
     set_threads(1)
     warm = pair(*lab.TABLE["discs"], 0)
     for solid in (None, warm.solid):

@@ -238,7 +238,7 @@ def film(made: Trial, stem: Path) -> Path:
 
 if __name__ == "__main__":
     asked = options(
-        __doc__ or "", HERE, packings=(int, 12, "packings of discs"), polygons=(int, 2, "packings of each polygon"),
+        __doc__ or "", HERE, packings=(int, 12, "packings of discs", 1), polygons=(int, 2, "packings of each polygon"),
         count=(int, lab.COUNT, "seeds of a sample, of half as many for square ones of polygons"),
     )  # fmt: skip
     numbers, figure, tests = measure(asked.packings, asked.polygons, asked.count)

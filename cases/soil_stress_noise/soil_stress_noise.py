@@ -81,7 +81,7 @@ def creep(name: str, spacing: float, seconds: float) -> float:
 def main() -> int:
     """Measure every method, compare with expected.toml, draw."""
     words = options(
-        __doc__ or "", HERE, rows=(int, 20, "particles in the height"), seconds=(float, 2.0, "that ground rests")
+        __doc__ or "", HERE, rows=(int, 20, "particles in the height", 1), seconds=(float, 2.0, "that ground rests")
     )
     spacing = HEIGHT / words.rows
     numbers: dict[str, float] = {}

@@ -174,11 +174,13 @@ def convert(
     model = DeckRun(deck, Options(seed, release, rod=rod), folder)
     bonds = tensions(model.built) if model.grains.bonds is not None else None
     text = toml(scene_of(model.deck, name, release, UNITS[units], bonds, rod))
-    _require_valid_scene(text)
+    refused = _require_valid_scene(text)
     write_text(file, text)
     if deck.jclid == GO_ON and (count := stretched(model.grains)):
         which = "1 contact" if count == 1 else f"{count} contacts"
         print(f"{file}: leaves out the tangential springs of {which}: scenes start with them at rest")
+    for line in refused:
+        warn(f"{file}: porescale check refuses it, though demseg run takes the deck: {line}")
     print(f"{file}: check it with porescale check {file}")
     return 0
 
@@ -216,10 +218,11 @@ def volonoi(
     return 0
 
 
-def _require_valid_scene(text: str) -> None:
-    """InputError where the scene of a deck exceeds the limits of scenes."""
+def _require_valid_scene(text: str) -> list[str]:
+    """InputError where the scene of a deck exceeds the limits of scenes; lines of what a check of it would refuse."""
     from tempfile import TemporaryDirectory
 
+    from porescale.builders.derive import derive
     from porescale.builders.scene import Scene
     from porescale.common.schema.sections import load
 
@@ -227,6 +230,11 @@ def _require_valid_scene(text: str) -> None:
         file = Path(place) / "scene.toml"
         file.write_text(text, encoding="utf-8")
         try:
-            load(file, Scene)
+            scene = load(file, Scene)
         except InputError as error:
             raise InputError([replace(fault, file="the deck as a scene") for fault in error.faults]) from None
+        try:
+            derive(scene)
+        except InputError as error:
+            return [fault.line() for fault in error.faults]
+    return []

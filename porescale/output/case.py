@@ -35,22 +35,27 @@ def missed(folder: Path, numbers: Mapping[str, float | None]) -> list[str]:
     return [row["name"] for row, it in given if it is not None and not abs(it - row["value"]) <= row["tolerance"]]
 
 
-def options(description: str, folder: Path, **more: tuple[type, Any, str]) -> argparse.Namespace:
-    """The options of a script in ``folder``: --out, and those in ``more``, (type, default, help); bool is a flag.
+Option = tuple[type, Any, str] | tuple[type, Any, str, float]
+"""Type, default, help and, of a number, the least that is allowed."""
 
-    Ends the program with exit code 2 at what is no option, and at ``packings`` below 1: there would be no mean.
+
+def options(description: str, folder: Path, **more: Option) -> argparse.Namespace:
+    """The options of a script in ``folder``: --out, and those in ``more``; of type bool is a flag.
+
+    Ends the program with exit code 2 at what is no option, and at a number below its least.
     """
     parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     default = Path("runs") / folder.name
     parser.add_argument("--out", type=Path, default=default, help=f"folder of the picture (default: {default})")
-    for name, (kind, value, text) in more.items():
+    for name, (kind, value, text, *_) in more.items():
         if kind is bool:
             parser.add_argument(f"--{name}", action="store_true", help=text)
         else:
             parser.add_argument(f"--{name}", type=kind, default=value, help=f"{text} (default: {value})")
     asked = parser.parse_args()
-    if (packings := getattr(asked, "packings", 1)) < 1:
-        parser.error(f"--packings = {packings}: is out of range (allowed: 1 or more)")
+    for name, (_, _, _, *least) in more.items():
+        if least and getattr(asked, name) < least[0]:
+            parser.error(f"--{name} = {getattr(asked, name)}: is out of range (allowed: {least[0]:g} or more)")
     return asked
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from porescale.common.pictures.initial import Feature, Lens, Points
+from porescale.common.schema.names import names_of
 from porescale.scene.time_function import Component
 
 if TYPE_CHECKING:
@@ -149,9 +150,9 @@ def _shift(component: Component, time: float) -> float:
 
 def _containers(scene: Scene) -> Iterator[Feature]:
     """Containers, and the course of the end of one that moves."""
-    for k, it in enumerate(scene.container):
+    for name, it in zip(names_of(scene.container, "container"), scene.container, strict=True):
         points = np.array(it.chain or [(line[0], line[1]) for line in it.ends], float)
-        name, pivot = it.name or f"container {k}", np.array(it.pivot or points.mean(axis=0))
+        pivot = np.array(it.pivot or points.mean(axis=0))
         if max(part.fastest for part in (it.x, it.y, it.rotation)) == 0.0:
             yield Feature("side", name, marks=(tuple(points[0]),))
             continue
@@ -176,14 +177,14 @@ def _containers(scene: Scene) -> Iterator[Feature]:
 def _walls(scene: Scene) -> Iterator[Feature]:
     """Free walls, where they cross the box."""
     reach = math.hypot(scene.domain.width, scene.domain.height)
-    for k, it in enumerate(scene.wall):
+    for name, it in zip(names_of(scene.wall, "wall"), scene.wall, strict=True):
         length = math.hypot(*it.normal)
         along = np.array([-it.normal[1], it.normal[0]]) / length
         ends = [np.clip(np.array([it.x, it.y]) + sign * reach * along, 0.0, (scene.domain.width, scene.domain.height))
                 for sign in (-1, 1)]  # fmt: skip
         pressed = "under stress" if it.stress else "under force" if it.force else "moves" if it.moves else "stands"
         kind = "side" if pressed == "stands" else "moves"
-        yield Feature(kind, f"{it.name or f'wall {k}'}, {pressed}", path=[(float(x), float(y)) for x, y in ends])
+        yield Feature(kind, f"{name}, {pressed}", path=[(float(x), float(y)) for x, y in ends])
 
 
 def _packing(scene: Scene) -> Iterator[Feature]:

@@ -8,7 +8,7 @@ from porescale.builders.build import build
 from porescale.cli import demseg
 from porescale.cli.main import commands
 from porescale.common.cli.application import main
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, PorescaleWarning
 from porescale.common.schema.sections import load
 from porescale.demseg.build import Options
 from porescale.demseg.run import read
@@ -168,6 +168,32 @@ def test_a_scene_of_segments_runs_as_its_deck_to_round_off(tmp_path, gm, bc, sec
     # Places are off by eps of 10 from the start; a bounce multiplies that by how far a body comes over how deep it
     # goes, some 1e2: 10 eps 1e2 = 2e-13 a bounce, of which there are a few.
     assert apart(deck, scene) < 1e-12
+
+
+@pytest.mark.parametrize("low", ["-.05", "-.3"])
+def test_a_body_that_is_pressed_into_a_side_is_so_in_its_scene(tmp_path, low):
+    deck, scene = converted(tmp_path, decks.TRIANGLE.replace("-2 2", f"-2 {low}"))
+    assert scene.grains.discs.position[:, 1].min() == pytest.approx(float(low), abs=1e-14)  # eps of 7, about its centre
+    for model in (deck, scene):
+        model.advance(200)
+    assert np.abs(deck.grains.steering.clumps.velocity).max() > 1.0  # the side presses it back
+    assert apart(deck, scene) < 1e-12  # as above
+
+
+def test_what_a_scene_refuses_and_a_deck_does_not_is_said(tmp_path, capsys):
+    # A corner 0.9 below the floor, more than 0.1 of the body's 7.9; middles of its sides are inside.
+    folder = decks.write(tmp_path / "deck", decks.TRIANGLE.replace("-2 2", "-2 -.9"))
+    read(folder, Options())
+    file = tmp_path / "a.toml"
+    assert main(commands(), ["demseg", "convert", str(folder), "--out", str(file)]) == 0
+    said = capsys.readouterr()
+    line = "polygon[0] = '(8, -0.9)': reaches out of the box; move it inside"
+    refused = "porescale check refuses it, though demseg run takes the deck"
+    assert said.err == f"warning: {file}: {refused}: {line}\n"
+    assert main(commands(), ["check", str(file)]) == 2
+    assert line in capsys.readouterr().err
+    with pytest.warns(PorescaleWarning, match="reaches out"):
+        demseg.convert(folder, out=file, overwrite=True)
 
 
 def test_a_bonded_chain_becomes_a_scene_with_its_bonds(tmp_path):

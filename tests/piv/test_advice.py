@@ -84,7 +84,7 @@ def test_where_there_are_no_tracers_a_mask_is_advised_and_helps():
 
 
 def test_a_good_pair_is_not_doubted():  # the check that must fail, were everything doubted
-    assert doubts(pictures(lost=0.3, noise=10.0)) == ("", pytest.approx(1.0, abs=0.05))
+    assert doubts(pictures(lost=0.3, noise=5.0)) == ("", pytest.approx(1.0, abs=0.05))
 
 
 def test_the_command_warns_on_stderr_and_in_json(tmp_path, monkeypatch, capsys):

@@ -14,7 +14,9 @@ from porescale.builders.initial.frames import placed_frames
 from porescale.builders.report import report
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError, Unstable
+from porescale.common.schema.names import names_of
 from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.output.features import features_of
 from tests.reference.scenes import grain, refusals, water
 from tests.reference.scenes_of_grains import BOX, assert_same_bits, framed, lines, loose, resumed
 
@@ -123,6 +125,18 @@ def test_a_run_with_a_tipping_container_goes_on_to_the_bit():
     assert validate(Scene, scene_as_dict(scene)) == scene
 
 
+def test_containers_and_walls_have_one_name_in_pictures_tables_and_messages():
+    trays = [{**FLOOR, "name": ""}, {**FLOOR, "chain": [[1e-3, 5e-3], [9e-3, 5e-3]]}]
+    scene = framed(container=trays, wall=[{"x": 5e-4, "y": 4e-3, "normal": [1, 0]}],
+                   grains={"density": 2500, "grain": [grain(3e-3, 3e-3)]})  # fmt: skip
+    names = names_of(scene.container, "container")
+    assert names == ["container 0", "floor"]
+    assert [it.name for it in placed_frames(scene)] == names
+    labels = [it.label for it in features_of(scene)]
+    assert set(names) < set(labels)
+    assert f"{names_of(scene.wall, 'wall')[0]}, stands" in labels
+
+
 def test_polygons_at_random_are_the_same_for_the_same_seed():
     many = {"sides": 5, "diameter": 1e-3, "thickness": 5e-5, "number": 12, "within": [1e-3, 1e-3, 9e-3, 7e-3],
             "size_spread": 0.3}  # fmt: skip
@@ -174,6 +188,19 @@ def refused(**changes: Any) -> list[str]:
 def test_bodies_of_segments_that_cannot_be_are_refused_by_name(changes, line):
     found = refused(**changes) if "pivot" not in str(changes) else _built(**changes)
     assert found[0].startswith(line), found
+
+
+@pytest.mark.parametrize(("overlap", "bears"), [(0.1, 0.25e-4), (0.02, 0.2e-4), (0.0, 0.0)])
+def test_a_body_may_start_pressed_into_a_side_by_as_much_as_into_another_body(overlap, bears):
+    # A share of its 1 mm, and a quarter of its thickness of 0.1 mm.
+    def at(depth: float) -> dict[str, Any]:
+        corners = [[5e-3, 1e-4 - depth], [6e-3, 1e-4 - depth], [6e-3, 11e-4 - depth], [5e-3, 11e-4 - depth]]
+        grains = {"density": 2500, "grain": [grain(2e-3, 2e-3)], "overlap": overlap}
+        return {"polygon": [{"corners": corners, "thickness": 1e-4}], "grains": grains, "domain": BOX}
+
+    derive(framed(**at(0.99 * bears)))
+    (line,) = lines(**at(1.01 * bears + 1e-9))
+    assert "reaches out of the box" in line
 
 
 def _built(**changes: Any) -> list[str]:

@@ -40,14 +40,15 @@ WAVES = 0.5
 
 def check_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> list[Fault]:
     """Faults of the places of frames among each other and the discs placed by hand, which have ``names``."""
-    faults = [*_out_of_the_box(scene.domain, placed), *_too_thin(scene.contact, placed)]
+    share = scene.grains.overlap if scene.grains else 0.0
+    faults = [*_out_of_the_box(scene.domain, placed, share), *_too_thin(scene.contact, placed)]
     moving = [it for it in placed if it.kind != "container"]
     if scene.wall and moving and not faults:
         corners = np.concatenate([np.array(it.frame.corners) for it in moving])
         reach = np.concatenate([np.full(len(it.frame.corners), it.frame.thickness) for it in moving])
         keys = [it.key for it in moving for _ in it.frame.corners]
         faults += across_walls(scene, corners, reach, keys, 0.0)
-    found = None if faults else first_overlap(scene.grains.overlap if scene.grains else 0.0, placed, discs, names)
+    found = None if faults else first_overlap(share, placed, discs, names)
     return faults + ([found] if found else [])
 
 
@@ -60,14 +61,22 @@ def require_frames_apart(share: float, placed: Sequence[Placed], discs: Discs, n
         raise InputError(found)
 
 
-def _out_of_the_box(domain: Domain, placed: Sequence[Placed]) -> list[Fault]:
-    """The first frame of each section that reaches out of a box with solid sides, or is as long as a period."""
+def _out_of_the_box(domain: Domain, placed: Sequence[Placed], share: float) -> list[Fault]:
+    """The first frame of each section that reaches out of a box with solid sides, or is as long as a period.
+
+    A side presses back what is pressed into it: ``share`` of a body's size at most, as of discs, and MOST of its
+    thickness where it has one.  A container is moved, whatever presses on it.
+    """
     size, periodic = np.array([domain.width, domain.height]), np.array(domain.periodic)
     faults: dict[str, Fault] = {}
     for it in placed:
         at = np.array(it.frame.corners)
-        reach = 0.0 if it.kind == "container" else it.frame.thickness
-        out = ((at - reach < -EDGE * size) | (at + reach > (1.0 + EDGE) * size)) & ~periodic
+        reach, pressed = 0.0, 0.0
+        if it.kind != "container":
+            reach, pressed = it.frame.thickness, share * float(np.ptp(at, axis=0).max())
+            pressed = min(pressed, MOST * reach) if reach > 0.0 else pressed
+        edge = EDGE * size + pressed
+        out = ((at - reach < -edge) | (at + reach > size + edge)) & ~periodic
         if out.any():
             corner = at[out.any(axis=1).argmax()]
             where = f"({corner[0]:g}, {corner[1]:g})"

@@ -16,6 +16,7 @@ from porescale.builders.initial.random_polygons import copies_of
 from porescale.builders.initial.time_functions import control_of
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
+from porescale.common.schema.names import names_of
 from porescale.dem.bodies.clumps import Body
 from porescale.dem.bodies.frames import Frame, add_frames, chain, corner_discs, framed, from_ends, polygon, skin_of
 from porescale.dem.contact.law import ContactLaw
@@ -63,9 +64,10 @@ def placed_frames(scene: Scene) -> list[Placed]:
     """The frames that are placed by hand, in their order; raises InputError at one that cannot be, by its key."""
     found: list[Placed] = []
     faults: list[Fault] = []
+    names = iter(names_of(scene.container, "container"))
     for key, kind, section in _sections(scene):
         try:
-            found += _made(MaterialPlan.of(scene), key, kind, section)
+            found += _made(MaterialPlan.of(scene), key, kind, section, next(names) if kind == "container" else "")
         except InputError as error:
             faults += [_of_section(fault, key) for fault in error.faults]
     if faults:
@@ -95,12 +97,13 @@ def _of_section(fault: Fault, key: str) -> Fault:
     return replace(fault, key=f"{key}.{name}", value=value, repair=repair)
 
 
-def _made(plan: MaterialPlan, key: str, kind: Kind, section: SegmentBody | PolygonBody | Container) -> list[Placed]:
-    """The bodies of all copies of one section."""
+def _made(
+    plan: MaterialPlan, key: str, kind: Kind, section: SegmentBody | PolygonBody | Container, name: str
+) -> list[Placed]:
+    """The bodies of all copies of one section;  name : of a container."""
     number = plan.number(section.material, wall=kind == "container")
     more: dict[str, Any] = {"material": number}
     if isinstance(section, Container):
-        name = section.name or key.replace("[", " ").removesuffix("]")
         return [Placed(key, kind, _container(plan, section, more), _prescribed(section), name, section.record)]
     density = section.density or plan.density(section.material)
     more |= {"velocity": section.velocity, "spin": section.spin}
