@@ -2,10 +2,12 @@
 
 What stands in a strip is measured by its weight,
 
-    level = bottom + Σ w(x_i) m_i/(ρ0 ∫ w dx)          (i: above the bottom)
+    level = bottom + Σ w(x_i, y_i) m_i/(ρ0 ∫ w dx)
 
 so that the head on what lies below is exact, however the particles are packed.  w is 1 but for cosine ramps at the ends
-that lie in the water: a column of particles that crosses an end would else change the level by its whole share.  While
+that lie in the water: a column of particles that crosses an end would else change the level by its whole share.  So
+would a row that comes out of ground at the bottom, or goes into it, and water that rises by a fraction of a row would
+be let stand as much too high: there a straight ramp takes in rows in part.  A bottom that is the tank's has none.  While
 more than half a particle is missing one is put on the lowest place of the surface, at rest, unless that stands far over
 the level already; while more than half a particle is over the highest of the strip is taken out.  A level at the bottom
 takes out whatever comes.
@@ -28,6 +30,9 @@ from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.types import Floats
 
+OF_A_ROW = 1.6
+"""Spacings over which a row that crosses the bottom is taken in: 1/√n apart are rows of water in pores, 1.58 for n = 0.4.
+Rows as far apart as this add up to what has passed at every moment, others to a small part of a row."""
 RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
 BERTH = 1.5  # cutoffs between berths
 HEAP = 0.1
@@ -63,19 +68,25 @@ def measure_strip(fluid, x, mass, material, left, right, ramp_left, ramp_right, 
     """
     columns = tops.shape[0]
     breadth = (right - left) / columns
+    ramp_bottom = OF_A_ROW * spacing if bottom > 0.0 else 0.0
     for c in range(columns):
         tops[c] = bottom - 0.5 * spacing
     total = 0.0
     highest = -1
     for i in range(fluid):
-        if mass[i] == 0.0 or material[i] != 0 or x[i, 0] < left or x[i, 0] > right or x[i, 1] < bottom:
+        if mass[i] == 0.0 or material[i] != 0 or x[i, 0] < left or x[i, 0] > right:
+            continue
+        above = x[i, 1] - bottom
+        if above < -0.5 * ramp_bottom:
             continue
         weight = 1.0
         if x[i, 0] < left + ramp_left:
             weight = 0.5 - 0.5 * np.cos(np.pi * (x[i, 0] - left) / ramp_left)
         elif x[i, 0] > right - ramp_right:
             weight = 0.5 - 0.5 * np.cos(np.pi * (right - x[i, 0]) / ramp_right)
-        total += weight * mass[i]
+        total += weight * mass[i] * (min(1.0, 0.5 + above / ramp_bottom) if ramp_bottom > 0.0 else 1.0)
+        if above < 0.0:
+            continue
         if weight > least and (highest < 0 or x[i, 1] > x[highest, 1]):
             highest = i
         at = (x[i, 0] - left) / breadth

@@ -9,7 +9,7 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply
-from continuum_sph.seepage.reservoir import CLOSER, HEAP, berths, measure_strip, park_waiting
+from continuum_sph.seepage.reservoir import CLOSER, HEAP, OF_A_ROW, berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
@@ -59,6 +59,20 @@ def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are(
         slow = np.zeros_like(strip.tops)
         assert measure_strip.py_func(*where, slow) == (pytest.approx(held, rel=1e-14), highest)
         assert np.array_equal(slow, strip.tops)
+
+
+def test_a_row_that_comes_out_of_the_ground_is_taken_in_as_it_comes():
+    apart, mass = OF_A_ROW * SPACING, np.full(8, 1000.0 * SPACING**2)
+    layer, tops = (np.zeros(8, np.int64), np.zeros(1))
+    for risen in np.linspace(0.0, 1.0, 9):  # of a row
+        y = 0.5 + (np.arange(8) - 4.0 + risen) * apart
+        x = np.column_stack((np.full(8, 0.5 * SPACING), y))
+        held, highest = measure_strip(8, x, mass, layer, 0.0, SPACING, 0.0, 0.0, 0.5, SPACING, 0.5, tops)
+        assert held / mass[0] == pytest.approx(3.5 + risen, rel=1e-13)
+        assert highest == 7
+    # The twin: on the floor of a tank a row counts as a whole.
+    held, _ = measure_strip(8, x - [0.0, 0.5], mass, layer, 0.0, SPACING, 0.0, 0.0, 0.0, SPACING, 0.5, tops)
+    assert held / mass[0] in (4.0, 5.0)
 
 
 def test_what_has_passed_on_has_no_steps_of_whole_particles():
