@@ -139,7 +139,7 @@ def derive(scene: Scene) -> Derived:
             faults.append(Fault("loads.grains", number, "there is no such grain", "", allowed))
     check_controls(scene, free, faults)
     if not faults:
-        check_motions(scene, faults)
+        check_motions(scene, frames, faults)
     if faults:
         raise InputError(faults)
     return Derived(
