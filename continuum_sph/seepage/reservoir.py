@@ -7,8 +7,8 @@ What stands in a strip is measured by its weight,
 so that the head on what lies below is exact, however the particles are packed.  w is 1 but for cosine ramps at the ends
 that lie in the water: a column of particles that crosses an end would else change the level by its whole share.  So
 would a row that comes out of ground at the bottom, or goes into it, and water that rises by a fraction of a row would
-be let stand as much too high: there a straight ramp takes in rows in part.  A bottom that is the tank's has none.  While
-more than half a particle is missing one is put on the lowest place of the surface, at rest, unless that stands far over
+be let stand as much too high: there a straight ramp takes in rows in part.  The floor of a tank has none.  While more
+than half a particle is missing one is put on the lowest place of the surface, at rest, unless that stands far over
 the level already; while more than half a particle is over the highest of the strip is taken out.  A level at the bottom
 takes out whatever comes.
 
@@ -31,7 +31,7 @@ from porescale.common.compiled.jit import kernel
 from porescale.common.core.types import Floats
 
 OF_A_ROW = 1.6
-"""Spacings over which a row that crosses the bottom is taken in: 1/√n apart are rows of water in pores, 1.58 for n = 0.4.
+"""Spacings over which a row that crosses the bottom is taken in: rows of water in pores are 1/√n apart, 1.58 with n = 0.4.
 Rows as far apart as this add up to what has passed at every moment, others to a small part of a row."""
 RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
 BERTH = 1.5  # cutoffs between berths
