@@ -31,7 +31,7 @@ from porescale.common.compiled.jit import kernel
 from porescale.common.core.types import Floats
 
 OF_A_ROW = 1.6
-"""Spacings over which a row that crosses the bottom is taken in: rows of water in pores are 1/√n apart, 1.58 with n = 0.4.
+"""Spacings over which a row that crosses the bottom is taken in: in pores rows are 1/√n apart, 1.58 with n = 0.4.
 Rows as far apart as this add up to what has passed at every moment, others to a small part of a row."""
 RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
 BERTH = 1.5  # cutoffs between berths
