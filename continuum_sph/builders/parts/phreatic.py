@@ -41,7 +41,8 @@ def phreatic_row(cloud: MeasuredWater, soil: Floats) -> dict[str, float]:
     breadth = max(2.0 * PITCH * cloud.spacing, cloud.width / len(x))
     strips = (LevelSection(name="", x=float(at), breadth=breadth) for at in x)
     row = {f"{FIRST}{strip.x:.6g} m (m)": surface_height(strip, cloud) for strip in strips}
-    end, sag = sagging(*wetting_line(x, np.array(list(row.values())), top(soil, x, cloud.spacing) + 0.5 * cloud.spacing))
+    ground = top(soil, x, cloud.spacing) + 0.5 * cloud.spacing
+    end, sag = sagging(*wetting_line(x, np.array(list(row.values())), ground))
     return row | {END: end, SAG: sag}
 
 
@@ -68,8 +69,8 @@ def wetting_line(x: Floats, heights: Floats, ground: Floats) -> tuple[Floats, Fl
 
 
 def sagging(x: Floats, line: Floats) -> tuple[float, float]:
-    """(last place, m;  sag) of a ``line`` (k,) m at places ``x`` (k,) m: the mean height of its chord over it, as a share
-    of the chord's fall; both 0 of fewer than 4 points, with which it has hardly begun.
+    """(last place, m;  sag) of a ``line`` (k,) m at places ``x`` (k,) m: the mean height of its chord over it, as a
+    share of the chord's fall; both 0 of fewer than 4 points, with which it has hardly begun.
 
     0 is a straight line, 1/6 the wave of a dam that breaks (Ritter 1892), -1/6 a parabola that stands upright at its
     foot, -0.049 the exact solution of Boussinesq's equation for water that enters dry ground (Barenblatt 1952).

@@ -68,6 +68,7 @@ def test_the_foot_in_dry_ground_goes_as_boussinesq_says():
 def darcy(seconds, times):
     """(last place m, sag) at ``times`` (s) in the levee of the case, the river risen from 0.12 to 0.28 m in so many
     ``seconds``, k = 0.1 m/s."""
+
     def level(time):
         return 0.12 + 0.16 * min(1.0, time / seconds)
 

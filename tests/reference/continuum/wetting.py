@@ -1,7 +1,7 @@
 """A levee on an impervious base wetted by a river that rises: Darcy's law on a grid, in a few slow lines.
 
-Cells are full, or hold what has come so far; water leaves a cell as its filling lets it, k min(f, 1) ∇H, from the cell of
-the higher head (upwind).  A full cell has the pressure ρ g M (f - 1), M a column that squeezes it by 1/M of a metre.
+Cells are full, or hold what has come so far; water leaves a cell as its filling lets it, k min(f, 1) ∇H, from the cell
+of the higher head (upwind).  A full cell has the pressure ρ g M (f - 1), M a column that squeezes it by 1/M of a metre.
 Neither suction, nor inertia, nor air; a river at rest.
 """
 
@@ -17,8 +17,8 @@ def lines(
     permeability: float, step: float,
 ):  # fmt: skip
     """(places x (k,) m, heights (len(times), k) m of the water in a levee of an ``outline`` from foot to foot, m, at
-    ``times``, s): 0 where cells are less than half full.  level : of the river, m;  wet : what is full at the start lies
-    left of it and below the level, m;  permeability m/s;  step : of the grid, m."""
+    ``times``, s): 0 where cells are less than half full.  level : of the river, m;  wet : what is full at the start
+    lies left of it and below the level, m;  permeability m/s;  step : of the grid, m."""
     corners = np.array(outline)
     x = np.arange(0.5 * step, corners[-1, 0] + 2.0 * step, step)
     y = np.arange(0.5 * step, corners[:, 1].max() + 2.0 * step, step)
