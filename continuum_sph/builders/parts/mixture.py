@@ -187,7 +187,7 @@ class PoreInstruments(Part):
             found["probes"] = probe_row(self.probes, cloud, flow.porosity[there])
         if self.levels:
             found["levels"] = level_row(self.levels, cloud)
-        found[NAME] = phreatic_row(cloud)
+        found[NAME] = phreatic_row(cloud, flow.skeleton.x)
         for name, level in zip(names_of(self.levels, "level"), self.levels, strict=True):
             through = discharge(level, cloud, flow.porosity[there])
             found["levels"][f"{name} discharge (m2/s)"] = through

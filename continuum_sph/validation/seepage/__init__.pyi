@@ -12,7 +12,6 @@ from . import saturated_box as saturated_box
 from . import setups as setups
 from . import sheet_pile as sheet_pile
 from . import wet_slopes as wet_slopes
-from . import wetting as wetting
 
 __all__ = [
     "air",
@@ -28,5 +27,4 @@ __all__ = [
     "setups",
     "sheet_pile",
     "wet_slopes",
-    "wetting",
 ]

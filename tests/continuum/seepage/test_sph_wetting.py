@@ -1,14 +1,16 @@
-"""How a wetting line sags, and what Boussinesq's equation says of its foot."""
+"""How a wetting line sags: what phreatic.csv says of it, and what Boussinesq's equation and Darcy's law say it does."""
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from continuum_sph.validation.seepage.wetting import BOUSSINESQ, Levee, sag
+from continuum_sph.builders.parts.phreatic import sagging, wetting_line
+from tests.reference.continuum.wetting import lines
 
-X = np.linspace(0.0, 2.0, 401)
-# the foot lies half a spacing beyond the last wet place: 1/400 of the way, and so the mean height
-STEP = 1.0 / 200
+X = np.linspace(0.0, 1.0, 201)
+BOUSSINESQ = 1.616
+"""Way of the front over √(k h0 t/n), n ∂h/∂t = k ∂(h ∂h/∂x)/∂x, h = h0 at an upright face (Barenblatt 1952)."""
+OUTLINE = [(0.3, 0.0), (0.98, 0.34), (1.18, 0.34), (1.86, 0.0)]  # m, of the case dry_levee
 
 
 @pytest.mark.parametrize(
@@ -16,14 +18,38 @@ STEP = 1.0 / 200
     [(lambda s: 1.0 - s, 0.0), (lambda s: (1.0 - s) ** 2, 1.0 / 6.0), (lambda s: np.sqrt(1.0 - s), -1.0 / 6.0)],
 )
 def test_sag_tells_straight_hanging_and_standing_lines_apart(shape, expected):
-    heights = 0.3 * np.where(X < 1.0, shape(np.minimum(X, 1.0)), 0.0)
-    way, hang = sag(X, heights, 0.3)
-    assert way == pytest.approx(1.0, abs=STEP)
-    assert hang == pytest.approx(expected, abs=STEP)
+    end, sag = sagging(X, 0.3 * shape(X))
+    assert end == 1.0
+    # trapezoids of 1/200: exact, 1/200² f'/12 of a parabola, 0.21 (1/200)^1.5 of a root at its upright end
+    assert sag == pytest.approx(expected, abs=0.21 * 0.005**1.5 + 1e-12)
 
 
-def test_a_line_that_has_hardly_begun_has_no_sag():
-    assert sag(X, np.where(2.5 * X[1] > X, 0.1, 0.0)[1:], 0.3) == (0.0, 0.0)
+def test_a_line_that_does_not_fall_or_has_hardly_begun_has_no_sag():
+    assert sagging(X[:3], np.array([0.3, 0.2, 0.1])) == (0.0, 0.0)
+    assert sagging(X, np.full(len(X), 0.3)) == (0.0, 0.0)
+    assert sagging(np.zeros(0), np.zeros(0)) == (0.0, 0.0)
+
+
+def test_the_line_starts_where_the_rivers_surface_meets_the_ground():
+    x = np.arange(0.02, 2.0, 0.04)
+    ground = np.where((x > 0.3) & (x < 1.86), np.interp(x, *np.array(OUTLINE).T), -np.inf)
+    heights = np.where(x < 0.86, 0.28, np.maximum(0.0, 0.28 - 0.5 * (x - 0.86)))
+    places, line = wetting_line(x, heights, ground)
+    # both are straight between strips, but for the corner of the surface itself, which lies on the crossing
+    assert (places[0], line[0]) == pytest.approx((0.86, 0.28), abs=0.02)
+    assert places[-1] == pytest.approx(1.42 - 0.02, abs=0.02)
+    assert sagging(places, line)[1] == pytest.approx(0.0, abs=0.02)
+    # none without a river on its left, nor where the river stands over all of the ground
+    assert not wetting_line(x[10:15], heights[10:15] * 0.1, ground[10:15])[0].size
+    assert not wetting_line(x, np.full(len(x), 0.4), ground)[0].size
+
+
+def test_it_ends_where_water_comes_out_again():
+    x = np.arange(0.02, 2.0, 0.04)
+    ground = np.where((x > 0.3) & (x < 1.86), np.interp(x, *np.array(OUTLINE).T), -np.inf)
+    places, line = wetting_line(x, np.where(x < 1.86, 0.2, 0.1), ground)
+    assert places[-1] == pytest.approx(1.86 - 0.4, abs=0.04)  # where the land side is 0.2 m high, to a strip
+    assert line[-1] == 0.2
 
 
 def test_the_foot_in_dry_ground_goes_as_boussinesq_says():
@@ -35,13 +61,26 @@ def test_the_foot_in_dry_ground_goes_as_boussinesq_says():
     foot = [0.5 * BOUSSINESQ * start, 0.5 * BOUSSINESQ]
     found = solve_ivp(slope, (start, BOUSSINESQ), foot, rtol=1e-9, atol=1e-11, dense_output=True)
     assert found.y[0, -1] == pytest.approx(1.0, abs=5e-4)
-    mean = np.trapezoid(found.sol(np.linspace(start, BOUSSINESQ, 1001))[0], dx=1e-3)
-    assert 0.5 - mean == pytest.approx(-0.049, abs=5e-4)
+    x = np.linspace(start, BOUSSINESQ, 1001)
+    assert sagging(x, found.sol(x)[0][::-1])[1] == pytest.approx(-0.049, abs=5e-4)
 
 
-def test_a_levee_is_as_wide_as_its_slopes_need():
-    given = Levee()
-    assert given.base == pytest.approx(0.2 + 4.0 * 0.34)
-    x = np.array([0.0, given.basin + 0.2, given.basin + 0.5 * given.base, given.size[0]])
-    np.testing.assert_allclose(given.top(x), [0.0, 0.1, 0.34, 0.0])
-    assert (given.ground[:, 1] < given.top(given.ground[:, 0])).all()
+def darcy(seconds, times):
+    """(last place m, sag) at ``times`` (s) in the levee of the case, the river risen from 0.12 to 0.28 m in so many
+    ``seconds``, k = 0.1 m/s."""
+
+    def level(time):
+        return 0.12 + 0.16 * min(1.0, time / seconds)
+
+    found, (x, heights) = [], lines(OUTLINE, level, 0.54, times, 0.1, 0.03)
+    for time, line in zip(times, heights, strict=True):
+        edge = 0.3 + 2.0 * level(time)
+        within = (x > edge) & (line > 0.0)
+        found.append(sagging(np.append(edge, x[within]), np.append(level(time), line[within])))
+    return np.array(found)
+
+
+def test_by_darcys_law_the_line_sags_as_long_as_the_river_rises_and_no_longer():
+    rising, standing = darcy(5.0, (3.0, 5.0)), darcy(0.1, (5.0, 8.0))
+    assert (rising[:, 1] > 0.08).all()
+    assert (standing[:, 1] < 0.04).all()  # the check that must fail: a river that stands

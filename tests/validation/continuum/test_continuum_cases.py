@@ -2,11 +2,15 @@
 
 from functools import partial
 
+import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
+from continuum_sph.scene.sections import Scene
+from porescale.common.schema.sections import load
 from tests.reference.continuum import continuum_cases
 from tests.reference.continuum.continuum_cases import missed
+from tests.reference.folders import CASES
 
 series = partial(continuum_cases.series, Simulation, 20)
 
@@ -38,3 +42,24 @@ def test_pushed_and_viscous_columns_run():
     assert thick["front (m)"][-1] < thin["front (m)"][-1]
     released = series("collapsing_water_column", *short[:2])
     assert thin["front (m)"][-1] > released["front (m)"][-1] + 0.05  # half a spacing
+
+
+def lines(*settings):
+    """Columns of series.csv and phreatic.csv of the dry levee, changed by ``settings``."""
+    model = Simulation(load(CASES / "dry_levee", Scene, overrides=settings))
+    rows = []
+    while model.time < 7.0:
+        model.advance(100)
+        rows.append(model.series() | model.tables()["phreatic"])
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+@pytest.mark.slow
+def test_a_line_sags_in_a_dry_levee_as_long_as_the_river_rises():
+    assert missed("dry_levee", lines()) == []
+
+
+@pytest.mark.slow
+def test_after_a_sudden_rise_the_line_does_not_sag():  # the twin that must fail
+    columns = lines("reservoir.0.rise=[[0, 0.12], [0.5, 0.28]]")
+    assert "the line sags while its foot is under the slope" in missed("dry_levee", columns)
