@@ -30,6 +30,7 @@ from continuum_sph.water.kernel_correction import neighbourhood_moments
 from continuum_sph.water.leapfrog import Densities, Motion, Pressing, kick, kick_drift, pressurise
 from continuum_sph.water.no_step import no_step
 from continuum_sph.water.parameters import RULES, Law
+from continuum_sph.water.parting import LOOK, part_at_walls
 from continuum_sph.water.pressure_walls import load_walls
 from continuum_sph.water.rates import rates, split_rows
 from continuum_sph.water.shifting import MOST, QUIET, shift
@@ -199,6 +200,8 @@ class Flow:
             )  # fmt: skip
             self.stopped += stopped
             fastest = max(fastest, float(sound2))
+        if self.stopped and self.step % LOOK == 0:
+            part_at_walls(layer, self.bounds, self.law.spacing)
         if self.together:
             self.sound_rate = fastest**0.5
         layer.rate, layer.rate_before = layer.rate_before, layer.rate
