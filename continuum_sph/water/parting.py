@@ -1,9 +1,9 @@
 """Particles on a wall that are about to be in one place are parted along it.
 
-A particle that reaches a wall is put on its surface (`leapfrog`), so those that lie there have a line to themselves.  As
-r goes to 0 what pushes a pair apart falls as r, and what presses it together from both sides falls as r, too: where the
-latter is more, its distance falls as exp(-t/τ) until it is no number above 0, and then nothing parts the two for ever.
-Where distances fall so far that no other cause is left, each goes a tenth of a spacing along the wall.
+A particle that reaches a wall is put on its surface (`leapfrog`), so those that lie there have a line to themselves.
+As r goes to 0 what pushes a pair apart falls as r, and what presses it together from both sides falls as r, too: where
+the latter is more, its distance falls as exp(-t/τ) until it is no number above 0, and then nothing parts the two for
+ever.  Where distances fall so far that no other cause is left, each goes a tenth of a spacing along the wall.
 """
 
 from typing import Any
