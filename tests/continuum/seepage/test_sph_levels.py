@@ -9,7 +9,7 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply
-from continuum_sph.seepage.reservoir import CLOSER, HEAP, OF_A_ROW, berths, measure_strip, park_waiting
+from continuum_sph.seepage.reservoir import ABOVE, BELOW, CLOSER, HEAP, berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
@@ -61,18 +61,36 @@ def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are(
         assert np.array_equal(slow, strip.tops)
 
 
-def test_a_row_that_comes_out_of_the_ground_is_taken_in_as_it_comes():
-    apart, mass = OF_A_ROW * SPACING, np.full(8, 1000.0 * SPACING**2)
-    layer, tops = (np.zeros(8, np.int64), np.zeros(1))
-    for risen in np.linspace(0.0, 1.0, 9):  # of a row
-        y = 0.5 + (np.arange(8) - 4.0 + risen) * apart
-        x = np.column_stack((np.full(8, 0.5 * SPACING), y))
-        held, highest = measure_strip(8, x, mass, layer, 0.0, SPACING, 0.0, 0.0, 0.5, SPACING, 0.5, tops)
-        assert held / mass[0] == pytest.approx(3.5 + risen, rel=1e-13)
-        assert highest == 7
+def held_over_ground(rows, spacing=SPACING):
+    """Rows of water held by a strip a spacing wide over a bottom at 0.5 m;  rows (k,): spacings over that."""
+    x = np.column_stack((np.full(len(rows), 0.5 * spacing), 0.5 + np.asarray(rows) * spacing))
+    mass = np.full(len(rows), 1000.0 * spacing**2)
+    where = (len(rows), x, mass, np.zeros(len(rows), np.int64), 0.0, spacing, 0.0, 0.0)
+    held, highest = measure_strip(*where, 0.5, spacing, 0.5, np.zeros(1))
+    assert highest == int(np.argmax(rows))
     # The twin: on the floor of a tank a row counts as a whole.
-    held, _ = measure_strip(8, x - [0.0, 0.5], mass, layer, 0.0, SPACING, 0.0, 0.0, 0.0, SPACING, 0.5, tops)
-    assert held / mass[0] in (4.0, 5.0)
+    x[:, 1] -= 0.5
+    assert measure_strip(*where, 0.0, spacing, 0.5, np.zeros(1))[0] == pytest.approx(mass[0] * np.sum(x[:, 1] > 0.0))
+    return held / mass[0]
+
+
+def test_water_at_rest_on_ground_has_its_level():
+    above, apart = np.arange(6) + 0.5, 1.0 / 0.4**0.5
+    rows = np.concatenate((above, -apart * above))
+    # what lies below reaches BELOW - apart/2 into the ramp
+    assert held_over_ground(rows) == pytest.approx(6.0, abs=1.01 * (BELOW - 0.5 * apart) / (BELOW + ABOVE))
+
+
+@pytest.mark.parametrize("porosity", [0.3, 0.4, 0.5])
+def test_a_row_that_comes_out_of_the_ground_is_taken_in_as_it_comes(porosity):
+    passed, left_out = (np.arange(50) + 0.5) / 50.0, []
+    for part in passed:  # of a row, whose rows are n times as near once they are out
+        way = 3.5 + part - np.arange(9)
+        left_out.append(held_over_ground(np.where(way > 0.0, way, way / porosity)) - 4.0 - part)
+    # what the ramp counts below the bottom, n BELOW²/2, less what it leaves out above it, ABOVE²/2, over its length
+    assert np.mean(left_out) == pytest.approx((porosity * BELOW**2 - ABOVE**2) / 2.0 / (BELOW + ABOVE), abs=0.01)
+    assert abs(np.mean(left_out)) < 0.03
+    assert np.ptp(left_out) < 0.5  # the twin, of whole rows, has 1
 
 
 def test_what_has_passed_on_has_no_steps_of_whole_particles():
