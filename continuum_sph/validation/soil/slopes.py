@@ -178,15 +178,17 @@ def stop_row() -> Measured:
 
 
 @functools.cache
-def strewn_friction(rows: int, *, degrees: float = 30.0, friction: float = TAN_PHI) -> float:
+def strewn_friction(
+    rows: int, *, degrees: float = 30.0, friction: float = TAN_PHI, between: tuple[float, float] = (0.75, 1.5)
+) -> float:
     """Friction that slows a layer of strewn particles on a slope: (g sin β - a)/(g cos β), a (m/s²) its mean
-    acceleration between 0.75 s and 1.5 s.
+    acceleration ``between`` two times, s.
 
     friction : sin φ of the soil.
     """
     flow, tilt, marks = layer(degrees, rows, friction, columns=16, strewn=0.2), math.radians(degrees), []
     n = flow.soil.soil
-    for time in (0.75, 1.5):
+    for time in between:
         while flow.time < time:
             flow.advance()
         marks.append((flow.time, float(flow.soil.v[:n, 0].mean())))
