@@ -23,7 +23,7 @@ OFTEN = 10
 
 
 def start(height: float, near: float):
-    """Points (n, 2) of the surface of a column 1 wide, from the wall over the upper corner, rounded by 0.1, to the tip."""
+    """Points (n, 2) of the surface of a column 1 wide, from the wall over the upper corner, rounded by 0.1, to its foot."""
     angle = np.linspace(0.5 * np.pi, 0.0, 200)
     round_ = np.column_stack((0.9 + 0.1 * np.cos(angle), height - 0.1 + 0.1 * np.sin(angle)))
     x = np.vstack(([[0.0, height]], round_, [[1.0, 0.0]]))
@@ -75,7 +75,7 @@ def normal_speed(x, phi):
         way = way / length[:, None]
         from_first = x[:, None] - first[None]
         u = np.einsum("ijk,jk->ij", from_first, way)  # along the element
-        d = from_first[..., 0] * way[:, 1] - from_first[..., 1] * way[:, 0]  # across: above 0 on the side of the water, the right of the way
+        d = from_first[..., 0] * way[:, 1] - from_first[..., 1] * way[:, 0]  # across, above 0 in the water
         beyond = u - length
         with np.errstate(divide="ignore", invalid="ignore"):
             log_first = np.where(u**2 + d**2 > 0.0, np.log(u**2 + d**2), 0.0)
@@ -84,9 +84,7 @@ def normal_speed(x, phi):
         seen = np.where(np.abs(d) < 1e-13, 0.0, seen)
         # ∫ ln r, ∫ s ln r, ∫ ∂ln r/∂n and ∫ s ∂ln r/∂n over the element, s from its first end
         plain = 0.5 * (u * log_first - beyond * log_last) - length + np.abs(d) * seen
-        first_moment = u * plain + 0.25 * (
-            (beyond**2 + d**2) * (log_last - 1.0) - (u**2 + d**2) * (log_first - 1.0)
-        )
+        first_moment = u * plain + 0.25 * ((beyond**2 + d**2) * (log_last - 1.0) - (u**2 + d**2) * (log_first - 1.0))
         turned = np.sign(d) * seen
         turned_moment = u * turned + 0.5 * d * (log_last - log_first)
         for at, (a, b) in (
