@@ -1,6 +1,7 @@
-"""A column of water that collapses: its front against experiments, and the pressure at the start.
+"""A column of water that collapses: its front against potential flow and against experiments.
 
-Experiments in `dam_break.csv`: Martin & Moyce 1952 and Koshizuka & Oka 1996.  SI.
+In `dam_break.csv`: the same release without friction, by boundary elements (`tests/reference/continuum/dam_break.py`),
+and the experiments of Martin & Moyce 1952 and Koshizuka & Oka 1996.  SI.
 """
 
 import csv
@@ -17,22 +18,30 @@ from porescale.common.evidence.validations import Measured, Validations
 
 VALIDATIONS = Validations()
 
+RELEASE = "potential_flow"
 MARTIN_MOYCE = ("martin_moyce_1952_a1.125in", "martin_moyce_1952_a2.25in")
 KOSHIZUKA_OKA = ("koshizuka_oka_1996", "koshizuka_oka_1996_b")  # one experiment, digitised twice
 LATEST = 2.9  # of t √(2g/a): later the front reaches the far wall of the trial's tank
 RELEASED = 1.0  # of t √(2g/a): earlier the experiments show how their column was let go
+DEPTHS = (0.025, 0.05)
+"""Depths, over a, whose place potential flow tells: spacings of the columns that are held against it."""
 PASSED = 1.5  # widths: the first place that all experiments' fronts pass after that
+
+
+def series(name: str) -> Floats:
+    """The rows of one ``name`` in `dam_break.csv`: (k, 2) of t √(2g/a) and front/a."""
+    text = Path(__file__).with_name("dam_break.csv").read_text(encoding="utf-8")
+    rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))[1:]
+    return np.array([[float(t), float(x)] for s, t, x in rows if s == name])
+
+
+def released_front() -> dict[float, Floats]:
+    """Potential flow: by depth over a, 0 for its tip, (k, 2) of t √(2g/a) and how far water so deep goes, over a."""
+    return {0.0: series(RELEASE)} | {depth: series(f"{RELEASE}_{depth:g}a_deep") for depth in DEPTHS}
 
 
 def published_fronts() -> dict[str, Floats]:
     """Experiments of `dam_break.csv`: (k, 2) of t √(2g/a) and front/a; the mean where digitised twice."""
-    text = Path(__file__).with_name("dam_break.csv").read_text(encoding="utf-8")
-    rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))[1:]
-
-    def series(name: str) -> Floats:
-        """One experiment, (k, 2)."""
-        return np.array([[float(t), float(x)] for s, t, x in rows if s == name])
-
     first, second = (series(name) for name in KOSHIZUKA_OKA)
     shared = first[(first[:, 0] >= second[0, 0]) & (first[:, 0] <= second[-1, 0])]
     again = np.interp(shared[:, 0], second[:, 0], second[:, 1])
@@ -63,6 +72,27 @@ def front_against(front: Floats, series: Floats) -> tuple[float, float]:
     faster = (chosen[-1, 0] - chosen[0, 0]) / (passed[-1] - passed[0])
     ahead = np.interp(chosen[:, 0], front[:, 0], front[:, 1]) / chosen[:, 1] - 1.0
     return float(faster), float(np.abs(ahead).max())
+
+
+def behind_release(front: Floats, depth: float) -> float:
+    """Largest distance, in spacings, of a ``front`` of particles ``depth`` apart from where water so deep ends in
+    potential flow, at equal times."""
+    exact = released_front()[depth]
+    return float(np.abs(np.interp(exact[:, 0], front[:, 0], front[:, 1]) - exact[:, 1]).max()) / depth
+
+
+@VALIDATIONS.row(
+    "continuum.front_of_a_released_column",
+    source="potential flow of the same release by boundary elements, where the water is a spacing deep; 20 and 40 "
+    "particles over the width, to t √(2g/a) = 2.8, at equal times from the release on",
+    because="in spacings: a front of particles is known to half of one, and half of one in the depth of a front as "
+    "steep as 1 : 1 is another half",
+    tolerance=1.0,
+    slow=True,
+)
+def release_row() -> Measured:
+    """Largest distance of the front from where the water is a spacing deep, in spacings."""
+    return Measured.absolute(0.0, [behind_release(computed_front(round(1.0 / depth)), depth) for depth in DEPTHS])
 
 
 @VALIDATIONS.row(

@@ -23,7 +23,7 @@ OFTEN = 10
 
 
 def start(height: float, near: float):
-    """Points (n, 2) of the surface of a column 1 wide, from the wall over the upper corner, rounded by 0.1, to its foot."""
+    """Points (n, 2) of the surface of a column 1 wide, from the wall to its foot; the corner is rounded by 0.1."""
     angle = np.linspace(0.5 * np.pi, 0.0, 200)
     round_ = np.column_stack((0.9 + 0.1 * np.cos(angle), height - 0.1 + 0.1 * np.sin(angle)))
     x = np.vstack(([[0.0, height]], round_, [[1.0, 0.0]]))

@@ -157,6 +157,16 @@ def test_a_front_a_quarter_slower_or_faster_does_not_pass():
             assert place > tolerance("continuum.front_of_a_collapsing_column")
 
 
+@pytest.mark.slow
+def test_a_front_two_hundredths_faster_or_that_of_an_experiment_is_not_that_of_the_release():
+    allowed, (depth, *_) = tolerance("continuum.front_of_a_released_column"), dam_break.DEPTHS
+    front = dam_break.computed_front(round(1.0 / depth))
+    assert dam_break.behind_release(front * [1.0 / 1.02, 1.0], depth) > allowed
+    assert dam_break.behind_release(front * [1.0 / 0.98, 1.0], depth) > allowed
+    for series in dam_break.published_fronts().values():
+        assert dam_break.behind_release(series, depth) > 10.0 * allowed
+
+
 def test_published_fronts_are_read_whole():
     fronts = dam_break.published_fronts()
     assert [len(series) for series in fronts.values()] == [10, 15, 7]
