@@ -160,15 +160,15 @@ class Heave:
                 rise = float((x - model.part(SoilPart).first)[self.prism(model), 1].mean()) / self.buried
                 yield model.time, self.head(model.time), rise, model
 
-    def heaves(self, course: list[tuple[float, float]], seconds: float = SEEN) -> bool:
-        """Whether the prism's surface rose faster than RISES in the last so many ``seconds`` of a ``course``, rows of
-        time (s) and rise over s; not before WAIT is over."""
+    def heaves(self, course: list[tuple[float, float]]) -> bool:
+        """Whether the prism's surface rose faster than RISES in the last SEEN of a ``course``, rows of time (s) and
+        rise over s; not before WAIT is over."""
         time, rise = course[-1]
-        start = time - seconds
+        start = time - SEEN
         if start < self.settle + WAIT:
             return False
         risen = rise - float(np.interp(start, *np.array(course).T))
-        return risen * self.buried > RISES * self.permeability * self.critical * seconds
+        return risen * self.buried > RISES * self.permeability * self.critical * SEEN
 
     def onset(self) -> float:
         """Head over i_c s of the ramp in the middle of the first SEEN in which the ground `heaves`; nan if it never
@@ -181,12 +181,17 @@ class Heave:
         return float("nan")
 
     def stands(self, head: float, seconds: float = 2.0) -> bool:
-        """Whether ground under a ``head`` (over i_c s) that is held does not heave within ``seconds`` after WAIT."""
+        """Whether ground under a ``head`` (over i_c s) that is held does not heave, judged as under one that rises, within
+        ``seconds`` after WAIT."""
         every = 0.05
         end = WAIT + seconds + 2.0 * every  # a row may come a step late, and a last one not at all
         kept = replace(self, first=head, last=head + BARELY, rate=BARELY / end)
-        rows = [(time, rise) for time, _, rise, _ in kept.course(every)]
-        return not kept.heaves(rows, seconds)
+        rows: list[tuple[float, float]] = []
+        for time, _, rise, _ in kept.course(every):
+            rows.append((time, rise))
+            if kept.heaves(rows):
+                return False
+        return True
 
 
 BOUNDS = {0.25: (2.85, 3.18), 0.5: (2.93, 3.34), 0.75: (3.18, 3.76)}
