@@ -82,12 +82,20 @@ def submerge(scene: Scene, ground: SoilFlow) -> None:
     soil.stress[:n] *= (1.0 - np.minimum(1.0, buoyancy(scene, soil.x[:n]) / upright))[:, None]
 
 
-def unconsolidated(scene: Scene, x: Floats, rho: Floats) -> Floats:
-    """Densities (n,) of water at ``x`` (n, 2) m that has ``rho`` (n,) at rest, when it bears the weight of the soil."""
-    section, state = soil_section(scene), water_state(scene)
+def leave_to_water(scene: Scene, ground: SoilFlow, x: Floats, v: Floats, rho: Floats) -> Floats:
+    """Densities (n,) of water at ``x`` (n, 2) m, with ``rho`` (n,) at rest, when it bears the weight of the soil.
+
+    Overwrites the velocities of the soil and of the water in it, ``v`` (n, 2) m/s: they pass each other upright at
+    Darcy's velocity, q = k γ'/(ρ g), and together displace nothing: n v_w + (1 - n) v_s = 0.  From rest the momentum
+    that this has would ring in both as sound, by k c/(g H) of the weight.
+    """
+    section, state, n = soil_section(scene), water_state(scene), soil_section(scene).porosity
     depth = np.max([body.top(x[:, 0]) for body in section.body], axis=0) - x[:, 1]
     inside = np.any([body.holds(x) for body in section.body], axis=0)
     borne = section.density * scene.gravity * depth - buoyancy(scene, x)
+    q = section.permeability * (section.density / scene.water.density - (1.0 - n))
+    v[inside, 1] = q * (1.0 - n) / n
+    ground.soil.v[: ground.soil.soil, 1] = -q
     found: Floats = state.density_at(state.pressure(rho) + np.where(inside, np.maximum(borne, 0.0), 0.0))
     return found
 
@@ -138,8 +146,8 @@ def seepage_flow(scene: Scene) -> Seepage:
     section, law, spacing = soil_section(scene), pore_law(scene), scene.numerics.spacing
     ground, skeleton = ground_of(scene)
     x, v, rho = saturate(scene, skeleton.x, *water_particles(scene, law))
-    if section.stress == "unconsolidated":
-        rho = unconsolidated(scene, x, rho)
+    if section.stress == "unconsolidated" and isinstance(ground, SoilFlow):
+        rho = leave_to_water(scene, ground, x, v, rho)
     pile = sheet_pile(scene.pile, spacing) if scene.pile else None
     if pile:
         skeleton.foot = pile.foot(ground_at(section, pile.x))

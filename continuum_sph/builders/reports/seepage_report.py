@@ -294,8 +294,8 @@ def reached(times: Floats, steep: Floats, way: float) -> float:
 
 
 class Gradient(NamedTuple):
-    """steep (n,) : head over way of a flow from one face to another, or to the open surface of the ground, at each time;
-    upward (n,) : the same where the water leaves the ground through its surface, else 0."""
+    """steep (n,) : head over way of a flow from one face to another, or to the open surface of the ground, at each
+    time;  upward (n,) : the same where the water leaves the ground through its surface, else 0."""
 
     steep: Floats
     upward: Floats
