@@ -88,8 +88,9 @@ def _water(scene: Scene) -> Iterator[Feature]:
     for name, face in zip(names_of(scene.face, "face"), scene.face, strict=True):
         size = scene.tank.width, scene.tank.height
         (start, end), (at, _) = face.reach(size), face.across(size)
+        heads = " to ".join(f"{head:g}" for head in dict.fromkeys((face.table[0][1], face.table[-1][1])))
         ends = ((start, at), (end, at)) if face.axis == 0 else ((at, start), (at, end))
-        yield Feature("open", f"{name}, head {face.head:g} m", path=ends)
+        yield Feature("open", f"{name}, head {heads} m", path=ends)
 
 
 def _measured(scene: Scene) -> Iterator[Feature]:

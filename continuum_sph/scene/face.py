@@ -7,6 +7,7 @@ import numpy as np
 import pydantic
 
 from continuum_sph.scene.bounds import WHOLE
+from continuum_sph.scene.rise import Row, rise_faults, rows_of
 from continuum_sph.scene.soil import SoilSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
@@ -17,18 +18,36 @@ Size = tuple[float, float]
 
 
 class FaceSection(Section):
-    """A stretch of a side of the tank through which the water of the pores passes, at a constant head.
+    """A stretch of a side of the tank through which the water of the pores passes, at a given head.
 
     ``start`` and ``end`` are places along the side, x of floor and lid, y of the others; left out, the stretch goes to
     the corner.  It takes the rows of particles whose middles lie in it.  The ground is full of water, and none comes in
-    anew: water may pass by half a spacing.  A head lies no lower than the face.
+    anew: water may pass by half a spacing.  A head lies no lower than the face.  It stands at ``head`` for ever, or
+    follows ``rise``, as the level of a reservoir does.
     """
 
     name: str = pydantic.Field("", description="name in the columns (default: its number)")
     side: Literal["left", "right", "floor", "lid"] = pydantic.Field(description="side of the tank")
-    head: float = quantity("m", ge=0, le=1e5, help="head over the floor: water in a pipe there stands so high")
+    head: float | None = quantity("m", None, ge=0, le=1e5, help="head over the floor: water in a pipe stands so high")
+    rise: tuple[Row, ...] = pydantic.Field(default=(), description="rows of time (s) and head (m), in place of head")
     start: float | None = quantity("m", None, ge=0, le=1e5, help="where it begins along the side")
     end: float | None = quantity("m", None, ge=0, le=1e5, help="where it ends along the side")
+
+    @property
+    def table(self) -> tuple[Row, ...]:
+        """Rows of time (s) and head (m)."""
+        return rows_of(self.head, self.rise)
+
+    @property
+    def highest(self) -> float:
+        """Highest head of the table, m; 0 without one."""
+        return max((head for _, head in self.table), default=0.0)
+
+    def heads(self, time: Floats) -> Floats:
+        """Heads (n,) m at times (n,) s: straight lines between the rows of its table, constant before and after."""
+        times, heads = zip(*self.table, strict=True)
+        found: Floats = np.interp(time, times, heads)
+        return found
 
     @property
     def axis(self) -> int:
@@ -54,6 +73,8 @@ class FaceSection(Section):
 
     def faults(self, key: str, size: Size, spacing: float) -> list[Fault]:
         """What is wrong with it in a tank of a ``size``, m, with particles of a ``spacing``, m."""
+        if wrong := rise_faults(key, "head", self.head, self.rise):
+            return wrong
         (start, end), longest = self.reach(size), size[self.axis]
         for name, value in (("start", start), ("end", end)):
             if value > longest * (1.0 + 1e-9):
@@ -67,8 +88,10 @@ class FaceSection(Section):
                 return [Fault(f"{key}.start", start, few, "m", f"<= {longest - 2.0 * spacing:g}")]
             return [Fault(f"{key}.end", end, few, "m", f">= {start + 2.0 * spacing:g}")]
         highest = end if self.axis else self.across(size)[0]
-        if self.head < highest * (1.0 - 1e-9):
-            return [Fault(f"{key}.head", self.head, "makes the pressure at its upper end negative", "m",
+        lowest = min(head for _, head in self.table)
+        if lowest < highest * (1.0 - 1e-9):
+            given = "rise" if self.head is None else "head"
+            return [Fault(f"{key}.{given}", lowest, "makes the pressure at its upper end negative", "m",
                           f">= {highest:g}", "raise it, or end the face below it")]  # fmt: skip
         return []
 

@@ -2,23 +2,17 @@
 
 import math
 from collections.abc import Sequence
-from typing import Annotated
 
 import numpy as np
 import pydantic
 
 from continuum_sph.scene.bounds import WHOLE
+from continuum_sph.scene.rise import Row, rise_faults, rows_of
 from continuum_sph.scene.soil import SoilSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
 from porescale.common.schema.names import name_faults
-from porescale.common.schema.quantity import Quantity
 from porescale.common.schema.sections import Section, quantity
-
-Row = tuple[
-    Annotated[float, Quantity("s", ge=0, help="time from the start")],
-    Annotated[float, Quantity("m", ge=0, le=1e5, help="level at a time")],
-]
 
 
 class ReservoirSection(Section):
@@ -37,9 +31,9 @@ class ReservoirSection(Section):
     rise: tuple[Row, ...] = pydantic.Field(default=(), description="rows of time (s) and level (m)")
 
     @property
-    def table(self) -> tuple[tuple[float, float], ...]:
+    def table(self) -> tuple[Row, ...]:
         """Rows of time (s) and level (m)."""
-        return self.rise if self.level is None else ((0.0, self.level),)
+        return rows_of(self.level, self.rise)
 
     @property
     def highest(self) -> float:
@@ -59,16 +53,12 @@ class ReservoirSection(Section):
 
     def faults(self, key: str, width: float, height: float, spacing: float) -> list[Fault]:
         """What is wrong with it in a tank of ``width`` by ``height``, m, with particles of a ``spacing``, m."""
-        found = []
-        if (self.level is None) == (not self.rise):
-            found.append(Fault(key, None, "needs a level or a rise, and not both", repair="give one of them"))
+        found = rise_faults(key, "level", self.level, self.rise)
         if self.right - self.left < (2.0 - WHOLE) * spacing:
             found.append(Fault(f"{key}.right", self.right, "leaves fewer than 2 particles across", "m",
                                f">= {self.left + 2.0 * spacing:g}"))  # fmt: skip
         if self.right > width * (1.0 + 1e-9):
             found.append(Fault(f"{key}.right", self.right, "lies outside of the tank", "m", f"<= {width:g}"))
-        if any(later <= earlier for (earlier, _), (later, _) in zip(self.rise, self.rise[1:], strict=False)):
-            found.append(Fault(f"{key}.rise", [time for time, _ in self.rise], "has times that do not rise", "s"))
         given = "rise" if self.level is None else "level"
         for time, level in self.table:
             if not self.bottom <= level <= height:

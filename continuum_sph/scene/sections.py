@@ -66,7 +66,7 @@ class Scene(SceneBase):
     @property
     def head(self) -> float:
         """Highest head above the floor, m: of water in the open, and of faces."""
-        return max([self.highest, *(it.head for it in self.face)])
+        return max([self.highest, *(it.highest for it in self.face)])
 
     @property
     def has_water(self) -> bool:

@@ -93,10 +93,9 @@ class SoilSection(Section):
     none of its own;  strength : which of its angles;  origin : where they come from, for the card of a run.
 
     friction_angle : φ; tan φ = 0.5 of Maeda & Sakai 2004 is sin φ = 0.5, 30 degrees;  modulus : "printed" is their
-    eq. 43, of plane
-    stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would settle), or
-    "none";  permeability_law : how k follows the porosity;  floor, sides : of the tank, "hold" the soil or let it
-    "slip".
+    eq. 43, of plane stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would
+    settle), "none", or "unconsolidated": none, and the water of its full pores bears its weight;  permeability_law :
+    how k follows the porosity;  floor, sides : of the tank, "hold" the soil or let it "slip".
     """
 
     files: ClassVar[tuple[str, ...]] = ("material",)
@@ -127,7 +126,9 @@ class SoilSection(Section):
     saturated: bool = pydantic.Field(False, description="pores are full at the start, up to the surface of the ground")
     water_table: float | None = quantity("m", None, ge=0, le=1e5, help="height up to which pores are full at the start")
     held: bool = pydantic.Field(False, description="does not move, whatever acts on it: only its water does")
-    stress: Literal["geostatic", "none"] = pydantic.Field(default="geostatic", description="stress at the start")
+    stress: Literal["geostatic", "none", "unconsolidated"] = pydantic.Field(
+        default="geostatic", description="stress at the start"
+    )
     rest: float | None = quantity("", None, ge=0, le=5, help="K0 at the start")
     floor: Literal["hold", "slip"] = pydantic.Field(default="hold", description="whether the floor holds the soil")
     sides: Literal["hold", "slip"] = pydantic.Field(default="slip", description="whether the sides hold the soil")
@@ -161,6 +162,9 @@ class SoilSection(Section):
                 if not (-slack <= x <= width + slack and -slack <= y <= height + slack):
                     found.append(Fault(key, (x, y), "lies outside of the tank", "m"))
         found += name_faults("soil.watch", self.watch, "part")
+        if self.stress == "unconsolidated" and (not self.saturated or self.held):
+            repair = 'give soil.saturated = true and soil.held = false, or stress "geostatic"'
+            found.append(Fault("soil.stress", self.stress, "is of ground with full pores that may move", repair=repair))
         if self.dilatancy_angle > self.friction_angle:
             found.append(
                 Fault("soil.dilatancy_angle", self.dilatancy_angle, "makes soil that gives energy as it shears",

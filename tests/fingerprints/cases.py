@@ -61,13 +61,13 @@ SCRIPTS: dict[str, Script] = {
     for name, steps in {
         "angle_of_repose": 15_000, "biaxial_compression": 15_000, "biaxial_element": 100,
         "block_pushed_by_soil": 15_000, "bouncing_disc": 2000, "chain_pulse": 1000, "clay_bar": 100,
-        "clump": 3000, "consolidation": 100, "demseg_chain": 2000, "demseg_clump": 2000, "demseg_control": 2000,
+        "clump": 3000, "demseg_chain": 2000, "demseg_clump": 2000, "demseg_control": 2000,
         "demseg_disc": 2000, "demseg_repose": 10_000, "demseg_segment": 2000, "demseg_triangle": 2000,
-        "dry_column_collapse": 10_000, "grain_size": 10_000, "hanging_chain": 2000, "imbibition": 60,
+        "dry_column_collapse": 10_000, "grain_size": 10_000, "hanging_chain": 2000,
         "liquid_columns": 200, "micro_to_macro": 50, "oscillating_drop": 60, "rock": 15_000,
         "rolling_on_a_slope": 2000,
         "simple_shear": 15_000, "soil_stress_noise": 150, "sph_corrections": 100, "step_stability": 300,
-        "tumbling_plate": 60, "turned_stressed_block": 150, "upward_flow": 60,
+        "tumbling_plate": 60, "turned_stressed_block": 150,
     }.items()
 } | {
     "column_collapse_piv": Script("column_collapse_piv/column_collapse_piv.py", 4),

@@ -30,18 +30,20 @@ def pressure_face(
     own = (beyond < 0.0) & (along > max(start, 0.0)) & (along < min(end, size[axis]))
     point, normal = ((0.0, at), (0.0, inward)) if axis == 0 else ((at, 0.0), (inward, 0.0))
     face = PressureFace(walls[own], point, normal, np.zeros(int(own.sum())))
-    face.hydrostatic(x, section.head, weight)
+    face.hydrostatic(x, section.table[0][1], weight)
     return face
 
 
 class FacePart(Part):
-    """What flows through the faces of a scene.
+    """What flows through the faces of a scene, and their heads, which may change.
 
-    sections : of the faces of ``flow``, in its order;  flow : of the water;  spacing : of its particles, m.
+    sections : of the faces of ``flow``, in its order;  flow : of the water;  spacing : of its particles, m;
+    weight : ρ g, N/m³.
     """
 
-    def __init__(self, sections: Sequence[FaceSection], flow: PoreFlow, spacing: float) -> None:
-        self.names = names_of(sections, "face")
+    def __init__(self, sections: Sequence[FaceSection], flow: PoreFlow, spacing: float, weight: float) -> None:
+        self.names, self.weight = names_of(sections, "face"), weight
+        self.rising = [(face, it) for face, it in zip(flow.faces, sections, strict=True) if len(it.table) > 1]
         self.faces, self.flow, self.spacing = flow.faces, flow, spacing
         self.outer = [face.rows[self._depth(face, flow.home) < spacing] for face in self.faces]
 
@@ -55,6 +57,12 @@ class FacePart(Part):
         """The farthest way (m) that water has gone through a ``face``."""
         layer, home = self.flow.layer.x, self.flow.home
         return float(np.abs(self._depth(face, layer) - self._depth(face, home)).max())
+
+    def before(self) -> None:
+        """Set the heads that change to those at the end of the next step."""
+        end = np.array(self.flow.time + self.flow.next_step)
+        for face, section in self.rising:
+            face.hydrostatic(self.flow.layer.x, float(section.heads(end)), self.weight)
 
     def check(self) -> None:
         """Raise Unstable when more water has passed a face than is there to pass it."""

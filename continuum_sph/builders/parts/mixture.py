@@ -1,5 +1,6 @@
 """Soil with water in its pores: what is recorded of both layers together, and checks of their state."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -217,11 +218,11 @@ def assemble(scene: Scene) -> Assembly:
     if both.supply:
         parts.append(ReservoirPart(both.supply, both, scene.tank.height))
     if scene.face:
-        parts.append(FacePart(scene.face, both.water, scene.numerics.spacing))
+        parts.append(FacePart(scene.face, both.water, scene.numerics.spacing, scene.water.density * scene.gravity))
     if scene.pile and scene.gravity > 0.0:
         spacing = scene.numerics.spacing
         pile = sheet_pile(scene.pile, spacing)
-        given = given_heads(scene.face, pile.x, scene.inner, spacing)
+        given = partial(given_heads, scene.face, pile.x, scene.inner, spacing)
         parts.append(ExitGradientPart(pile, both.water, scene.water.density * scene.gravity, given))
     parts.append(PoreInstruments(scene, both.water))
     if scene.air:

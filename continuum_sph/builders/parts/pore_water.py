@@ -60,13 +60,10 @@ def wet_top(scene: Scene, x: Floats) -> Floats | None:
     return top if section.water_table is None else np.minimum(top, section.water_table)
 
 
-def submerge(scene: Scene, ground: SoilFlow) -> None:
-    """Take the buoyancy of the grains off the stress of soil that is at rest under its dry weight."""
-    section, soil = soil_section(scene), ground.soil
-    if section.stress == "none":
-        return
-    n = soil.soil
-    x = soil.x[:n]
+def buoyancy(scene: Scene, x: Floats) -> Floats:
+    """What water takes off the upright stress (n,) Pa of soil at ``x`` (n, 2) m that is at rest: (1 - n) ρ g of the
+    ground above that is wet."""
+    section = soil_section(scene)
     top = np.max([body.top(x[:, 0]) for body in section.body], axis=0)
     above = np.column_stack((x[:, 0], np.minimum(top, scene.inner[1])))
     wet = wet_height(scene, x) - wet_height(scene, above)
@@ -74,9 +71,33 @@ def submerge(scene: Scene, ground: SoilFlow) -> None:
     grains = wet if table is None else table - x[:, 1]  # of the soil above a particle, what is wet
     if section.water_table is not None:
         grains = np.maximum(wet, grains)
-    lost = (1.0 - section.porosity) * scene.water.density * scene.gravity * np.maximum(grains, 0.0)
+    lost: Floats = (1.0 - section.porosity) * scene.water.density * scene.gravity * np.maximum(grains, 0.0)
+    return lost
+
+
+def submerge(scene: Scene, ground: SoilFlow) -> None:
+    """Take the buoyancy of the grains off the stress of soil that is at rest under its dry weight."""
+    soil, n = ground.soil, ground.soil.soil
     upright = np.maximum(soil.stress[:n, 1], 1e-300)
-    soil.stress[:n] *= (1.0 - np.minimum(1.0, lost / upright))[:, None]
+    soil.stress[:n] *= (1.0 - np.minimum(1.0, buoyancy(scene, soil.x[:n]) / upright))[:, None]
+
+
+def leave_to_water(scene: Scene, ground: SoilFlow, x: Floats, v: Floats, rho: Floats) -> Floats:
+    """Densities (n,) of water at ``x`` (n, 2) m, with ``rho`` (n,) at rest, when it bears the weight of the soil.
+
+    Overwrites the velocities of the soil and of the water in it, ``v`` (n, 2) m/s: they pass each other upright at
+    Darcy's velocity, q = k γ'/(ρ g), and together displace nothing: n v_w + (1 - n) v_s = 0.  From rest the momentum
+    that this has would ring in both as sound, by k c/(g H) of the weight.
+    """
+    section, state, n = soil_section(scene), water_state(scene), soil_section(scene).porosity
+    depth = np.max([body.top(x[:, 0]) for body in section.body], axis=0) - x[:, 1]
+    inside = np.any([body.holds(x) for body in section.body], axis=0)
+    borne = section.density * scene.gravity * depth - buoyancy(scene, x)
+    q = section.permeability * (section.density / scene.water.density - (1.0 - n))
+    v[inside, 1] = q * (1.0 - n) / n
+    ground.soil.v[: ground.soil.soil, 1] = -q
+    found: Floats = state.density_at(state.pressure(rho) + np.where(inside, np.maximum(borne, 0.0), 0.0))
+    return found
 
 
 def pore_water(scene: Scene, soil: Floats) -> tuple[Floats, Floats]:
@@ -125,6 +146,8 @@ def seepage_flow(scene: Scene) -> Seepage:
     section, law, spacing = soil_section(scene), pore_law(scene), scene.numerics.spacing
     ground, skeleton = ground_of(scene)
     x, v, rho = saturate(scene, skeleton.x, *water_particles(scene, law))
+    if section.stress == "unconsolidated" and isinstance(ground, SoilFlow):
+        rho = leave_to_water(scene, ground, x, v, rho)
     pile = sheet_pile(scene.pile, spacing) if scene.pile else None
     if pile:
         skeleton.foot = pile.foot(ground_at(section, pile.x))

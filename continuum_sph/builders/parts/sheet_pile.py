@@ -11,7 +11,7 @@ soil there has lost its weight at i = i_c.  With fewer than LEAST rows beside th
 between the surface, where kernels round off the bend of the head, and the tip: no number then.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,10 +48,12 @@ def ground_at(section: SoilSection, x: float) -> float:
 class ExitGradientPart(Part):
     """The exit gradient beside a ``pile`` in a ``flow`` of water whose weight is ρ g (N/m³) > 0.
 
-    given : head (m) over the ground on its left and right, None: as found.
+    given : heads (m) over the ground on its left and right at a time (s), None: as found.
     """
 
-    def __init__(self, pile: Pile, flow: PoreFlow, weight: float, given: tuple[float | None, float | None]) -> None:
+    def __init__(
+        self, pile: Pile, flow: PoreFlow, weight: float, given: Callable[[float], tuple[float | None, float | None]]
+    ) -> None:
         self.pile, self.flow, self.weight, self.given = pile, flow, weight, given
 
     def row(self) -> dict[str, float]:
@@ -60,7 +62,7 @@ class ExitGradientPart(Part):
         exit gradient () : hydraulic gradient upwards where water leaves the ground beside the pile; nan where fewer
             than four rows of particles lie beside it
         """
-        return {NAME: exit_gradient(self.pile, self.flow, self.weight, self.given)}
+        return {NAME: exit_gradient(self.pile, self.flow, self.weight, self.given(self.flow.time))}
 
 
 def steepness(z: NDArray[np.complex128], head: Floats, buried: float) -> float:
@@ -114,11 +116,11 @@ def exit_gradient(pile: Pile, flow: PoreFlow, weight: float, given: tuple[float 
 
 
 def given_heads(
-    faces: Sequence[FaceSection], x: float, size: tuple[float, float], spacing: float
+    faces: Sequence[FaceSection], x: float, size: tuple[float, float], spacing: float, time: float = np.inf
 ) -> tuple[float | None, float | None]:
     """Heads (m) of the nearest faces of the lid on the left and right of a pile at ``x``, m; None where there is none
-    within `OPEN` spacings (m) of it.  size : of the tank, m."""
-    lid, near = [(*it.reach(size), it.head) for it in faces if it.side == "lid"], OPEN * spacing
+    within `OPEN` spacings (m) of it.  size : of the tank, m;  time s, left out: in the end."""
+    lid, near = [(*it.reach(size), float(it.heads(np.array(time)))) for it in faces if it.side == "lid"], OPEN * spacing
     left = max(((end, head) for start, end, head in lid if start < x < end + near), default=None)
     right = min(((start, head) for start, end, head in lid if start - near < x < end), default=None)
     return left[1] if left else None, right[1] if right else None

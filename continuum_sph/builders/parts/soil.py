@@ -346,7 +346,7 @@ def soil_particles(scene: Scene) -> tuple[Floats, Floats]:
     if empty:
         raise InputError(empty)
     x = lattice[inside]
-    if section.stress == "none":
+    if section.stress != "geostatic":
         return x, np.zeros((len(x), 4))
     return x, geostatic(top[inside] - x[:, 1], material_of(section), scene.gravity, section.rest)
 

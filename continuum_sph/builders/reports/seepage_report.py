@@ -38,6 +38,7 @@ BARE, COVERED = 0.2, 0.11
 """By how much an exit gradient is low where flow leaves bare ground, and ground under four rows of water: s/T = 0.5 in
 10 rows of ground that is held, against finite differences."""
 BROAD, APART = 6.0, 3.0  # spacings of open water in a strip that keeps its level, and from it to the ground
+PIECES = 100  # of a run, to add up what passes a face whose head rises
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
 
@@ -242,17 +243,19 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
     out.heading("sides that water passes")
     for name, it in zip(names_of(scene.face, "face"), scene.face, strict=True):
         start, end = it.reach(scene.inner)
-        out.row(name, it.head, "m", f"head, from {start:g} to {end:g} m along the {it.side}")
+        out.row(name, it.table[-1][1], "m", f"head in the end, from {start:g} to {end:g} m along the {it.side}")
     storage = section.porosity / (state.density * state.sound_speed**2)
     storage += 0.0 if section.held else 1.0 / largest_modulus(scene)
     spread = section.permeability / (state.density * scene.gravity * storage)
     slow = STEADY_AFTER * (float(np.ptp(soil, axis=0).max()) + numerics.spacing) ** 2 / spread
     out.row("time until the flow is steady", slow, "s", "pressures have spread over the longer side of the ground")
-    flows, last = gradients(scene), scene.time.end
-    steep = max((it.steep for it in flows), default=0.0)
-    lifting = max((it.steep for it in flows if it.upward), default=0.0)
+    times, last = moments(scene), scene.time.end
+    flows = gradients(scene, times)
+    steep = max((float(it.steep.max()) for it in flows), default=0.0)
+    lifting = max((float(it.upward.max()) for it in flows), default=0.0)
     if steep > 0.0:
-        seconds = FARTHEST * numerics.spacing * section.porosity / (section.permeability * steep)
+        way = FARTHEST * numerics.spacing * section.porosity / section.permeability
+        seconds = min(reached(times, it.steep, way) for it in flows)
         out.row("time in which water passes half a spacing", seconds, "s", "about; a run ends there")
         if last > seconds:
             out.warn(
@@ -276,17 +279,31 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
         out.warn("the lid stops water and not soil: ground that flow lifts passes through it")
 
 
+def moments(scene: Scene) -> Floats:
+    """Times (n,) s from the start to the end of a scene, between which all heads are straight lines."""
+    rows = [time for it in scene.face for time, _ in it.table if time < scene.time.end]
+    return np.unique([*np.linspace(0.0, scene.time.end, PIECES + 1), *rows])
+
+
+def reached(times: Floats, steep: Floats, way: float) -> float:
+    """When (s) the integral of ``steep`` (n,) over the ``times`` (n,) s is ``way`` (s); it stays at its last after."""
+    so_far = np.append(0.0, np.cumsum(0.5 * (steep[1:] + steep[:-1]) * np.diff(times)))
+    if so_far[-1] >= way:
+        return float(np.interp(way, so_far, times))
+    return float(times[-1] + (way - so_far[-1]) / steep[-1]) if steep[-1] > 0.0 else float("inf")
+
+
 class Gradient(NamedTuple):
-    """steep : head over way of a flow from one face to another, or to the open surface of the ground;  upward : whether
-    the water leaves the ground through its surface."""
+    """steep (n,) : head over way of a flow from one face to another, or to the open surface of the ground, at each
+    time;  upward (n,) : the same where the water leaves the ground through its surface, else 0."""
 
-    steep: float
-    upward: bool
+    steep: Floats
+    upward: Floats
 
 
-def gradients(scene: Scene) -> list[Gradient]:
-    """About how steep flow is between the faces of a scene, and from them to the surface of the ground where that is
-    open: heads over the shortest way."""
+def gradients(scene: Scene, times: Floats) -> list[Gradient]:
+    """About how steep flow is between the faces of a scene at ``times`` (n,) s, and from them to the surface of the
+    ground where that is open: heads over the shortest way."""
     spacing, found = scene.numerics.spacing, []
     top = soil_section(scene).height
     places = [it.along(scene.inner, spacing) for it in scene.face]
@@ -297,9 +314,10 @@ def gradients(scene: Scene) -> list[Gradient]:
             way = float(np.hypot(*np.maximum(gap, 0.0)))
             if scene.pile and one.side == other.side == "lid":
                 way = max(way, 2.0 * (top - scene.pile.tip))
-            lower = min(one, other, key=lambda it: it.head)
-            found.append(Gradient(abs(one.head - other.head) / max(way, spacing), lower.side == "lid"))
+            down = (one.heads(times) - other.heads(times)) / max(way, spacing)
+            leaves = (down > 0.0) & (other.side == "lid") | (down < 0.0) & (one.side == "lid")
+            found.append(Gradient(np.abs(down), np.where(leaves, np.abs(down), 0.0)))
         if one.side != "lid" and not scene.tank.lid:
-            over = one.head - max(top, scene.highest)
-            found.append(Gradient(abs(over) / max(top, spacing), over > 0.0))
+            down = (one.heads(times) - max(top, scene.highest)) / max(top, spacing)
+            found.append(Gradient(np.abs(down), np.maximum(down, 0.0)))
     return found

@@ -220,8 +220,7 @@ STARTS = (0.94, 0.96, 0.98, 1.0)
 def slowly(given: Heave, start: float = STARTS[1]) -> Heave:
     """The ground under a head that rises slowly from ``start``, over the weakest prism's.
 
-    What moves lags it by 4 T²/π² c_v = 0.3 s, 0.015 i_c s.  Twice as fast, ground heaves 0.3 % lower: what yields on the
-    way to where it would rest adds to its speed.
+    What moves lags it by 4 T²/π² c_v = 0.3 s, 0.015 i_c s.
     """
     return replace(given, first=start * WEAKEST[given.share], last=4.5, rate=0.05)
 
@@ -281,8 +280,8 @@ for buried in GROUNDS:
 @VALIDATIONS.row(
     "continuum.heave_under_any_course",
     source="exact: ground that yields at a head heaves at it, however it was reached; s/T = 0.5",
-    because="the ground lags the head that rises by 0.5 %, and a second of its rise is 1.7 % of the head, known to half "
-    "of that; the head that is held is halved to 0.4 %; onsets scatter by 2 %, a mean of four by 1 %, that which is held "
+    because="the ground lags the head that rises by 0.5 %, a second of its rise is 1.7 % of the head, known to half of "
+    "that; the head that is held is halved to 0.4 %; onsets scatter by 2 %, a mean of four by 1 %, that of the head held "
     "by 2 %: 2.5 % by the root of the sum of squares, and a fifth more",
     tolerance=0.03,
     slow=True,

@@ -76,7 +76,7 @@ def held_ground(
     of_tank = np.arange(n, layer.count - len(side))
     for face in faces:
         flow.faces.append(pressure_face(face, layer.x, of_tank, size, WATER * GRAVITY))
-        flow.faces[-1].pressure[:] = WATER * GRAVITY * face.head  # over water at rest, whose weight plays no part
+        flow.faces[-1].pressure[:] = WATER * GRAVITY * face.highest  # over water at rest, whose weight plays no part
     both = Seepage(flow, frame)
     both.start()
     mass[:n] = flow.porosity * WATER * spacing**2

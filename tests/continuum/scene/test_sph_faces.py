@@ -6,6 +6,7 @@ import pytest
 from continuum_sph.builders.parts.faces import FARTHEST, FacePart
 from continuum_sph.builders.parts.sheet_pile import given_heads, sheet_pile
 from continuum_sph.builders.report import report
+from continuum_sph.builders.reports.seepage_report import gradients, moments, reached
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.face import FaceSection
 from continuum_sph.scene.sections import Scene
@@ -107,8 +108,30 @@ def test_flow_under_a_pile_is_within_three_per_cent():
     assert row["up flow in (m2/s)"] != pytest.approx(shallow.discharge * K * fall, rel=0.03)
 
 
-def test_a_run_with_faces_goes_on_bit_for_bit():
-    faces = pair("floor", "lid", 0.3)
+def test_flow_follows_a_head_that_rises():
+    """The same as at a constant head once it has risen: what is left of the rise falls as exp(-π² D t/L²), of which
+    there are 7 in 0.3 s."""
+    low = {"name": "low", "side": "right", "head": 1.0}
+    high = {"name": "high", "side": "left", "rise": [[0.1, 1.0], [0.2, 1.2]]}
+    _, row = steady(scene([high, low]), 0.5)
+    exact = K * 0.2 / WIDE * HIGH
+    assert row["high flow in (m2/s)"] == pytest.approx(exact, rel=0.0125)
+    _, early = steady(scene([high, low]), 0.15)  # the check that fails: half of the rise
+    assert early["high flow in (m2/s)"] != pytest.approx(exact, rel=0.1)
+
+
+def test_heads_that_stay_are_not_set_again():
+    rising, staying = (
+        Simulation(scene([{"side": "left"} | head])).part(FacePart)
+        for head in ({"rise": [[0.0, 1.0], [1.0, 1.2]]}, {"head": 1.0})
+    )
+    assert len(rising.rising) == 1
+    assert staying.rising == []
+
+
+@pytest.mark.parametrize("high", [{"head": 1.3}, {"rise": [[0.0, 1.0], [1e-3, 1.3]]}])
+def test_a_run_with_faces_goes_on_bit_for_bit(high):
+    faces = [{"side": "floor"} | high, {"side": "lid", "head": 1.0}]
     whole, part = (Simulation(scene(faces)) for _ in range(2))
     whole.advance(12)
     part.advance(5)
@@ -162,6 +185,15 @@ def test_check_says_when_that_will_be_and_when_water_is_too_soft():
     said = " ".join(report(rising).warnings)
     assert "the run stops" in said
     assert "mends it" not in said
+    # half a spacing passes sooner at a constant head than at one that rises to it
+    given = [scene([{"side": "left", "rise": [[0.0, low], [2.0, 1.2]]}, {"side": "right", "head": 1.0}],
+                   time={"end": 2.0}) for low in (1.0, 1.2)]  # fmt: skip
+    times, steep = moments(given[0]), 0.2 / (WIDE - SPACING)
+    rising, staying = (gradients(it, times)[0].steep for it in given)
+    assert reached(times, staying, steep) == pytest.approx(1.0)
+    # t²/4 of the last gradient;  of 100 straight pieces the root is known to (1/100)²/8 of the square
+    assert reached(times, rising, 0.5 * steep) == pytest.approx(np.sqrt(2.0), rel=1e-4)
+    assert reached(times, rising, 2.0 * steep) == pytest.approx(3.0)
     loose = scene(pair("floor", "lid", 0.2), soil={"held": False, "stiffness": 1e7})
     assert any("passes through it" in it for it in report(loose).warnings)
 
@@ -204,6 +236,10 @@ def test_the_heads_over_the_ground_beside_a_pile_are_those_of_the_nearest_faces(
         ({"face": [{"side": "left", "head": 1.0, "start": 0.3, "end": 0.1}]}, "allowed: >= 0.4"),
         ({"tank": {"width": WIDE, "height": 0.6}, "face": [{"side": "lid", "head": 1.0}]}, "not along ground"),
         ({"face": [{"side": "lid", "head": 0.3}]}, "makes the pressure at its upper end negative"),
+        ({"face": [{"side": "lid", "rise": [[0, 0.5], [1, 0.3]]}]}, r"rise = 0.3 m: makes the pressure"),
+        ({"face": [{"side": "lid"}]}, "needs a head or a rise, and not both"),
+        ({"face": [{"side": "lid", "head": 1.0, "rise": [[0, 1.0]]}]}, "needs a head or a rise, and not both"),
+        ({"face": [{"side": "lid", "rise": [[1, 1.0], [1, 1.1]]}]}, "has times that do not rise"),
         ({"gravity": 0.0}, "needs gravity"),
     ],
 )  # fmt: skip

@@ -4,12 +4,10 @@ Scripts run as they are, some with fewer of their methods: those that the rows s
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from continuum_sph.validation.seepage import permeameter as verify_seepage
 from continuum_sph.validation.water import fluids as trials_fluids
 from continuum_sph.water.parameters import Law
 from porescale.output import case as cases
@@ -119,20 +117,3 @@ def test_two_columns_of_water_do_not_differ_and_are_not_level_at_once(concluded)
 
     numbers = concluded("liquid_columns", change=change)
     assert missed(CASES / "liquid_columns", numbers) == [row["name"] for row in expected(CASES / "liquid_columns")]
-
-
-def test_water_goes_up_through_soil_as_darcy_says_until_it_boils(concluded):
-    case = "upward_flow"
-    assert missed(CASES / case, concluded(case)) == []
-
-
-def test_water_that_has_not_come_to_speed_and_a_gradient_that_soon_rises_are_not_darcys(concluded, monkeypatch):
-    # The twin that must fail: a sixteenth of the steps, a gradient that rises ten times as fast, and looser soil.
-    low, high, seconds = verify_seepage.RAMP
-    monkeypatch.setattr(verify_seepage, "RAMP", (low, high, 0.1 * seconds))
-    monkeypatch.setattr(verify_seepage, "ramp", verify_seepage.ramp.__wrapped__)
-    darcy = verify_seepage.darcy
-    monkeypatch.setattr(verify_seepage, "darcy", lambda k: darcy(k, steps=100))
-    monkeypatch.setattr(verify_seepage, "BOILING", replace(verify_seepage.BOILING, porosity=0.45))
-    case = "upward_flow"
-    assert missed(CASES / case, concluded(case)) == [row["name"] for row in expected(CASES / case)]
