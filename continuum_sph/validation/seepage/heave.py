@@ -281,8 +281,8 @@ for buried in GROUNDS:
     "continuum.heave_under_any_course",
     source="exact: ground that yields at a head heaves at it, however it was reached; s/T = 0.5",
     because="the ground lags the head that rises by 0.5 %, a second of its rise is 1.7 % of the head, known to half of "
-    "that; the head that is held is halved to 0.4 %; onsets scatter by 2 %, a mean of four by 1 %, that of the head held "
-    "by 2 %: 2.5 % by the root of the sum of squares, and a fifth more",
+    "that; the head that is held is halved to 0.4 %; onsets scatter by 2 %, a mean of four by 1 %, that of the head "
+    "held by 2 %: 2.5 % by the root of the sum of squares, and a fifth more",
     tolerance=0.03,
     slow=True,
 )
