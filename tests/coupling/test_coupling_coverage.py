@@ -195,7 +195,16 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     kinds = ("periodic", "wall")
     compiled = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
     of_lines = "small_angle", "quarter_area", "line_at", "mark_lines", "across"
-    for name in (*of_lines, "corner_area", "strip_area", "least_part", "full_or_empty", "place_corner", "cover_disc"):
+    for name in (
+        *of_lines,
+        "corner_area",
+        "strip_area",
+        "least_part",
+        "full_or_empty",
+        "place_corner",
+        "cover_disc",
+        "cover_part",
+    ):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
     for name in ("list_part", "blocks_inside", "motion_of_row", "motion_of_block", "solid_velocity", "rasterize_row"):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
