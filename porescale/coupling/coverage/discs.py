@@ -163,7 +163,7 @@ def cover_disc(x, y, r, x0, y0, height, stride, fraction, lines):
             below = above
 
 
-@inline
+@kernel
 def cover_part(part, centre, radius, patches, lines):
     """``cover`` of the discs of one part of lines.shape[0]."""
     count, parts = radius.shape[0], lines.shape[0]
