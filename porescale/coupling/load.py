@@ -9,7 +9,15 @@ order afterwards, so that loads do not depend on threads.
 
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, prefetch
 from porescale.common.compiled.simd import choose, fma, load_eight, ramp_eight, reduce_add
-from porescale.coupling.coverage.rows import AHEAD, BLOCK, blocks_inside, motion_of_block, motion_of_row, solid_velocity
+from porescale.coupling.coverage.rows import (
+    AHEAD,
+    BLOCK,
+    SERIAL_BELOW,
+    blocks_inside,
+    motion_of_block,
+    motion_of_row,
+    solid_velocity,
+)
 
 
 @inline
@@ -122,8 +130,12 @@ def add_rows(corner, height, ny, periodic_y, row_load, load, inside):
 
     Inside mass: sum of B_n rho, what of the fluid takes the body's velocity in one step.
     """
-    for n in prange(load.shape[0]):
-        add_rows_of(n, corner, height, (ny, periodic_y), row_load, load, inside)
+    if row_load.shape[0] * row_load.shape[1] < SERIAL_BELOW:
+        for n in range(load.shape[0]):
+            add_rows_of(n, corner, height, (ny, periodic_y), row_load, load, inside)
+    else:
+        for n in prange(load.shape[0]):
+            add_rows_of(n, corner, height, (ny, periodic_y), row_load, load, inside)
 
 
 @inline

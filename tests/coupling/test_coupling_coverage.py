@@ -195,7 +195,16 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     kinds = ("periodic", "wall")
     compiled = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
     of_lines = "small_angle", "quarter_area", "line_at", "mark_lines", "across"
-    for name in (*of_lines, "corner_area", "strip_area", "least_part", "full_or_empty", "place_corner", "cover_disc"):
+    for name in (
+        *of_lines,
+        "corner_area",
+        "strip_area",
+        "least_part",
+        "full_or_empty",
+        "place_corner",
+        "cover_disc",
+        "cover_part",
+    ):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
     for name in ("list_part", "blocks_inside", "motion_of_row", "motion_of_block", "solid_velocity", "rasterize_row"):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
@@ -246,3 +255,35 @@ def test_no_discs_cover_nothing():
     wet = SaturatedCells(fluid, np.zeros(0))
     wet.advance(fluid, np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
     assert not wet.solid.any()
+
+
+def many_discs(count):
+    """Discs of 2.1 cells in rows, each a little off its place, in a box of 160 cells across: x, y, r."""
+    k = np.arange(count)
+    off = np.random.default_rng(2).uniform(-0.3, 0.3, (2, count))
+    return np.stack((4.7 * (k % 34) + off[0], 4.7 * (k // 34) + off[1], np.full(count, 2.1)), axis=1)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_many_bodies_over_threads_are_as_few_by_one(periodic):
+    from porescale.coupling import load
+
+    kinds, discs = ("periodic" if periodic else "wall",) * 2, many_discs(1500)
+    parts = [covered(it, 160, 208, kinds) for it in (discs, discs[:700], discs[700:])]
+    blocks = [len(it._patches.fraction) // BLOCK for it in parts]
+    assert blocks[0] > coverage_rows.SERIAL_BELOW > max(blocks[1:])
+    many, few = parts[0], parts[1:]
+    np.testing.assert_array_equal(many._patches.fraction, np.concatenate([it._patches.fraction for it in few]))
+    for y in range(208):  # those of the row in index order: first those of the first part
+        listed = [slice(*it._rows.start[y : y + 2]) for it in parts]
+        body = [it._rows.body[of].astype(int) for it, of in zip(parts, listed, strict=True)]
+        np.testing.assert_array_equal(body[0], np.concatenate((body[1], body[2] + 700)))
+        line = [it._rows.line[of] for it, of in zip(parts, listed, strict=True)]
+        np.testing.assert_array_equal(line[0], np.concatenate(line[1:]))
+    row_load = np.random.default_rng(3).uniform(-1, 1, (1500, 6, 5))
+    loads, inside = np.zeros((3, 1500, 3)), np.zeros((3, 1500, 2))
+    for k, of in enumerate((slice(1500), slice(700), slice(700, 1500))):
+        patches = parts[k]._patches
+        load.add_rows(patches.corner, patches.height, 208, periodic, row_load[of], loads[k, of], inside[k, of])
+    np.testing.assert_array_equal(loads[0], loads[1] + loads[2])
+    np.testing.assert_array_equal(inside[0], inside[1] + inside[2])

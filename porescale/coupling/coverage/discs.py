@@ -12,7 +12,20 @@ line: a disc d cells wide needs 2 (d + 2) of them.  Derived from G being the are
 import math
 
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, choose, fma, load, maximum, minimum, ramp, sqrt, store
+from porescale.common.compiled.simd import (
+    EIGHT,
+    LANES,
+    choose,
+    fma,
+    load,
+    maximum,
+    minimum,
+    ramp_eight,
+    sqrt,
+    store,
+    store_eight,
+)
+from porescale.coupling.coverage.rows import is_few
 
 CHUNKS = 64
 """Parts of the discs that are done side by side; any number gives the same patches."""
@@ -66,13 +79,14 @@ def mark_lines(first, count, r, at, area, side):
     """What corners need of their grid lines, the first of them at ``first`` from the centre.
 
     Overwrites, of ``count`` lines, a multiple of LANES, and one more that repeats the last: at, distance to the centre
-    clamped to [-r, r];  side, its sign;  area, G of it with that sign.
+    clamped to [-r, r];  side, its sign;  area, G of it with that sign.  Eight at a time, up to a multiple of that: the
+    polynomials of two vectors take turns where one would wait for itself, a tenth of a disc.
     """
-    for b in range(0, count, LANES):
-        distance, g, sign = line_at(ramp() + (first + b), r)
-        store(at, b, count, distance)
-        store(area, b, count, g)
-        store(side, b, count, sign)
+    for b in range(0, count, EIGHT):
+        distance, g, sign = line_at(ramp_eight(at) + (first + b), r)
+        store_eight(at, b, distance)
+        store_eight(area, b, g)
+        store_eight(side, b, sign)
     at[count], area[count], side[count] = at[count - 1], area[count - 1], side[count - 1]
 
 
@@ -149,6 +163,25 @@ def cover_disc(x, y, r, x0, y0, height, stride, fraction, lines):
             below = above
 
 
+@kernel
+def cover_part(part, centre, radius, patches, lines):
+    """``cover`` of the discs of one part of lines.shape[0]."""
+    count, parts = radius.shape[0], lines.shape[0]
+    corner, height, stride, start, fraction = (
+        patches.corner,
+        patches.height,
+        patches.stride,
+        patches.start,
+        patches.fraction,
+    )
+    for n in range(part * count // parts, (part + 1) * count // parts):
+        r = radius[n]
+        patch = fraction[start[n] : start[n] + stride[n] * height[n]]
+        place_corner(n, centre, r, corner)
+        x0, y0 = corner[n, 0], corner[n, 1]
+        cover_disc(centre[n, 0], centre[n, 1], r, x0, y0, height[n], stride[n], patch, lines[part])
+
+
 @parallel_kernel
 def cover(centre, radius, patches, lines):
     """Exact solid fractions of the cells around every disc.
@@ -157,19 +190,9 @@ def cover(centre, radius, patches, lines):
     n patches, whose rows hold one cell more than a disc can touch, and their corners.  The patch of a centre
     that is no number, or beyond ``FAR``, lies outside of every box with walls.
     """
-    count = radius.shape[0]
-    # By name: what a loop over threads writes into a member of a tuple is lost.
-    corner, height, stride, start, fraction = (
-        patches.corner,
-        patches.height,
-        patches.stride,
-        patches.start,
-        patches.fraction,
-    )
-    for chunk in prange(lines.shape[0]):
-        for n in range(chunk * count // lines.shape[0], (chunk + 1) * count // lines.shape[0]):
-            r = radius[n]
-            patch = fraction[start[n] : start[n] + stride[n] * height[n]]
-            place_corner(n, centre, r, corner)
-            x0, y0 = corner[n, 0], corner[n, 1]
-            cover_disc(centre[n, 0], centre[n, 1], r, x0, y0, height[n], stride[n], patch, lines[chunk])
+    if is_few(patches):
+        for part in range(lines.shape[0]):
+            cover_part(part, centre, radius, patches, lines)
+    else:
+        for part in prange(lines.shape[0]):
+            cover_part(part, centre, radius, patches, lines)
