@@ -165,7 +165,7 @@ def subjects() -> dict[str, Subject]:
         found[f"fluid/{name}"] = _fluid(text=rest.replace("height = 0.032\n", f"height = 0.032\n{head}"))
     found["solid/exact-wall"] = _solid(more=HELD)
     found["solid/exact-wall, soft"] = _solid("fluid.rim=soft", more=HELD)
-    found["solid/narrow-wall"] = _fluid("fluid.solid_operator=narrow-wall", text=CAVITY + HELD)
+    found["solid/narrow-wall"] = _fluid("fluid.solid_operator=narrow-wall", "time.end=0.5", text=CAVITY + HELD)
     found["solid/exact-wall, float32"] = _solid("fluid.precision=float32", more=HELD)
     for operator in SOLIDS:
         for weight in ("B1", "B2"):
