@@ -60,8 +60,8 @@ class FacePart(Part):
 
     def before(self) -> None:
         """Set the heads that change to those at the end of the next step."""
-        end = np.array(self.flow.time + self.flow.next_step)
         for face, section in self.rising:
+            end = np.array(self.flow.time + self.flow.next_step)
             face.hydrostatic(self.flow.layer.x, float(section.heads(end)), self.weight)
 
     def check(self) -> None:

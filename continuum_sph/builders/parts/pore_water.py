@@ -89,7 +89,8 @@ def leave_to_water(scene: Scene, ground: SoilFlow, x: Floats, v: Floats, rho: Fl
     Darcy's velocity, q = k γ'/(ρ g), and together displace nothing: n v_w + (1 - n) v_s = 0.  From rest the momentum
     that this has would ring in both as sound, by k c/(g H) of the weight.
     """
-    section, state, n = soil_section(scene), water_state(scene), soil_section(scene).porosity
+    section, state = soil_section(scene), water_state(scene)
+    n = section.porosity
     depth = np.max([body.top(x[:, 0]) for body in section.body], axis=0) - x[:, 1]
     inside = np.any([body.holds(x) for body in section.body], axis=0)
     borne = section.density * scene.gravity * depth - buoyancy(scene, x)

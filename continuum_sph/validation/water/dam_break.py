@@ -28,7 +28,7 @@ DEPTHS = (0.025, 0.05)
 PASSED = 1.5  # widths: the first place that all experiments' fronts pass after that
 
 
-def series(name: str) -> Floats:
+def tabulated(name: str) -> Floats:
     """The rows of one ``name`` in `dam_break.csv`: (k, 2) of t √(2g/a) and front/a."""
     text = Path(__file__).with_name("dam_break.csv").read_text(encoding="utf-8")
     rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))[1:]
@@ -37,16 +37,16 @@ def series(name: str) -> Floats:
 
 def released_front() -> dict[float, Floats]:
     """Potential flow: by depth over a, 0 for its tip, (k, 2) of t √(2g/a) and how far water so deep goes, over a."""
-    return {0.0: series(RELEASE)} | {depth: series(f"{RELEASE}_{depth:g}a_deep") for depth in DEPTHS}
+    return {0.0: tabulated(RELEASE)} | {depth: tabulated(f"{RELEASE}_{depth:g}a_deep") for depth in DEPTHS}
 
 
 def published_fronts() -> dict[str, Floats]:
     """Experiments of `dam_break.csv`: (k, 2) of t √(2g/a) and front/a; the mean where digitised twice."""
-    first, second = (series(name) for name in KOSHIZUKA_OKA)
+    first, second = (tabulated(name) for name in KOSHIZUKA_OKA)
     shared = first[(first[:, 0] >= second[0, 0]) & (first[:, 0] <= second[-1, 0])]
     again = np.interp(shared[:, 0], second[:, 0], second[:, 1])
     mean = np.column_stack((shared[:, 0], 0.5 * (shared[:, 1] + again)))
-    return {**{name: series(name) for name in MARTIN_MOYCE}, KOSHIZUKA_OKA[0]: mean}
+    return {**{name: tabulated(name) for name in MARTIN_MOYCE}, KOSHIZUKA_OKA[0]: mean}
 
 
 @functools.cache

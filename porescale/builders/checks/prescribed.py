@@ -29,6 +29,18 @@ LOOKS, PLACES = 4000, 100_000_000
 AT_ONCE = 1_000_000
 """Places of bodies, and of pairs, that are held in memory."""
 NAMES = ("left", "right"), ("bottom", "top")
+ROOM = "end its motion or the run before, or make the box larger"
+APART = "end the motion or the run before, or move one of them"
+"""What mends a body that goes into a side, and into a wall."""
+
+
+class Hit(NamedTuple):
+    """At which look a body, by its number, is in what, in words, and what mends that."""
+
+    look: int
+    body: int
+    what: str
+    repair: str
 
 
 class Driven(NamedTuple):
@@ -115,13 +127,9 @@ def check_motions(scene: Scene, frames: Sequence[Placed], faults: list[Fault]) -
     found = []
     into = [*_into_sides(scene, bodies, places), *_into_walls(walls, bodies, places, times)]
     if hit := min(into, default=None):
-        look, k, side = hit
-        body = bodies[k]
-        problem = f"goes more than {body.share:g} of {body.of_what} into {side} after {times[look]:.3g} s"
-        repair = "end its motion or the run before, or make the box larger"
-        if not side.endswith("side"):
-            repair = "end the motion or the run before, or move one of them"
-        found.append((look, Fault(body.key, None, problem, repair=repair)))
+        body = bodies[hit.body]
+        problem = f"goes more than {body.share:g} of {body.of_what} into {hit.what} after {times[hit.look]:.3g} s"
+        found.append((hit.look, Fault(body.key, None, problem, repair=hit.repair)))
     if met := _first_met(scene, bodies, places):
         look, i, j = met
         problem = f"and {bodies[j].name} run into each other after {times[look]:.3g} s, by more than"
@@ -213,9 +221,9 @@ def _moves(side: Side) -> bool:
     return moved or side.stress is not None or side.force is not None
 
 
-def _into_sides(scene: Scene, bodies: list[Driven], places: Floats) -> Iterator[tuple[int, int, str]]:
-    """(look, number, side in words) of every body of those at ``places`` (n, 2, looks) m that is moved into a side of
-    the box, and is not there at the start."""
+def _into_sides(scene: Scene, bodies: list[Driven], places: Floats) -> Iterator[Hit]:
+    """When and where each of the bodies at ``places`` (n, 2, looks) m is moved into a side of the box, where it is not
+    at the start."""
     d = scene.domain
     for k, (body, at) in enumerate(zip(bodies, places, strict=True)):
         for axis, size in enumerate((d.width, d.height)):
@@ -224,14 +232,14 @@ def _into_sides(scene: Scene, bodies: list[Driven], places: Floats) -> Iterator[
             for side, away in zip(NAMES[axis], (at[axis], size - at[axis]), strict=True):
                 inside = body.radius - away > body.share * body.radius
                 if inside.any() and not inside[0] and not _moves(d.side(side)):
-                    yield int(inside.argmax()), k, f"the {side} side"
+                    yield Hit(int(inside.argmax()), k, f"the {side} side", ROOM)
 
 
 def _into_walls(
     walls: Sequence[tuple[str, Wall]], bodies: list[Driven], places: Floats, times: Floats
-) -> Iterator[tuple[int, int, str]]:
-    """(look, number, wall) of every body at ``places`` (n, 2, looks) m that comes into a free wall, or the wall into
-    it, and is not there at the start."""
+) -> Iterator[Hit]:
+    """When and where bodies at ``places`` (n, 2, looks) m come into a free wall, or it into them, where they are not at
+    the start."""
     for name, wall in walls:
         angle = math.atan2(wall.normal[1], wall.normal[0]) + _gone(wall.turning, times)
         x, y = wall.x + _gone(wall.velocity_x, times), wall.y + _gone(wall.velocity_y, times)
@@ -241,7 +249,7 @@ def _into_walls(
             away = (places[k, 0] - x) * np.cos(angle) + (places[k, 1] - y) * np.sin(angle)
             inside = body.radius - away > body.share * body.radius
             if inside.any() and not inside[0]:
-                yield int(inside.argmax()), k, name
+                yield Hit(int(inside.argmax()), k, name, APART)
 
 
 def _first_met(scene: Scene, bodies: list[Driven], places: Floats) -> tuple[int, int, int] | None:

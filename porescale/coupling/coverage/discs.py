@@ -166,20 +166,12 @@ def cover_disc(x, y, r, x0, y0, height, stride, fraction, lines):
 @kernel
 def cover_part(part, centre, radius, patches, lines):
     """``cover`` of the discs of one part of lines.shape[0]."""
-    count, parts = radius.shape[0], lines.shape[0]
-    corner, height, stride, start, fraction = (
-        patches.corner,
-        patches.height,
-        patches.stride,
-        patches.start,
-        patches.fraction,
-    )
+    count, parts, corner = radius.shape[0], lines.shape[0], patches.corner
     for n in range(part * count // parts, (part + 1) * count // parts):
-        r = radius[n]
-        patch = fraction[start[n] : start[n] + stride[n] * height[n]]
+        r, height, stride, start = radius[n], patches.height[n], patches.stride[n], patches.start[n]
+        patch = patches.fraction[start : start + stride * height]
         place_corner(n, centre, r, corner)
-        x0, y0 = corner[n, 0], corner[n, 1]
-        cover_disc(centre[n, 0], centre[n, 1], r, x0, y0, height[n], stride[n], patch, lines[part])
+        cover_disc(centre[n, 0], centre[n, 1], r, corner[n, 0], corner[n, 1], height, stride, patch, lines[part])
 
 
 @parallel_kernel

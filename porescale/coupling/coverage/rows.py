@@ -23,8 +23,9 @@ than all that is done with it."""
 LISTING = 4
 """Parts of the lattice whose rows are listed side by side; any number gives the same lists."""
 SERIAL_BELOW = 8192
-"""Blocks of all patches: fewer are covered and listed, and their rows added, by one thread, in 0.4 ms at most.  To have
-two begin and end a loop takes 0.1 to 0.5 ms beside six other busy processes (measured)."""
+"""Blocks of all patches: fewer are covered and listed by one thread, in 0.4 ms at most; and rows that loads have room
+for, that are added so.  To have two threads begin and end a loop takes 0.1 to 0.5 ms beside six other
+busy processes (measured)."""
 
 
 class Patches(NamedTuple):

@@ -66,10 +66,8 @@ def normal_speed(x, phi):
     count = len(x)
     single, double = np.zeros((count, count)), np.zeros((count, count))
     for mirror in ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
-        images = x * mirror
-        first, last = (images[:-1], images[1:])
-        if mirror[0] * mirror[1] < 0.0:  # an image runs the other way round
-            first, last = last, first
+        images, turned_round = x * mirror, mirror[0] * mirror[1] < 0.0
+        first, last = (images[1:], images[:-1]) if turned_round else (images[:-1], images[1:])
         way = last - first
         length = np.hypot(*way.T)
         way = way / length[:, None]
@@ -91,10 +89,8 @@ def normal_speed(x, phi):
             (single, (plain - first_moment / length, first_moment / length)),
             (double, (turned - turned_moment / length, turned_moment / length)),
         ):
-            if mirror[0] * mirror[1] < 0.0:
-                a, b = b, a
-            at[:, :-1] += a
-            at[:, 1:] += b
+            at[:, :-1] += b if turned_round else a
+            at[:, 1:] += a if turned_round else b
     double[np.arange(count), np.arange(count)] -= double.sum(1)  # a uniform φ drives no flow
     return np.linalg.solve(single, double @ phi)
 
