@@ -65,15 +65,15 @@ def show(folder: Path) -> list[Path]:
     from dataclasses import replace
 
     from continuum_sph.look import is_dry
-    from porescale.common.pictures.film import film
-    from porescale.common.pictures.picture import paint_last, pictures
+    from porescale.common.pictures.film import painted
+    from porescale.common.pictures.picture import paint_last
     from porescale.common.record.open_run import open_run
 
     run = open_run(folder)
     look, scene = look_of(run), run.card["scene"]
     names = () if not scene["soil"] else SOIL if is_dry(scene) else SEEPAGE
     more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in names]
-    return [*pictures(folder, look), *more, film(folder, look)]
+    return [*painted(folder, look), *more]
 
 
 def look_of(run: Run) -> Look:

@@ -32,14 +32,14 @@ def build(scene: Scene) -> Simulation:
     return Simulation(system, add_parts(system))
 
 
-def system_of(scene: Scene) -> System:
-    """Fluid and grains of ``scene`` at time 0; raises InputError."""
+def system_of(scene: Scene, *, hasty: bool = False) -> System:
+    """Fluid and grains of ``scene`` at time 0; raises InputError.  hasty : as of `grains_of`."""
     derived = derive(scene)
     require_memory(scene, derived)
     require_device_of(scene)
     made = System(scene, derived, Clock(derived.model_step), frames=frames_of(scene, derived))
     if scene.grains or scene.disc or scene.rectangle or scene.ring:
-        made.grains, made.recorded = grains_of(scene, derived, made.frames)
+        made.grains, made.recorded = grains_of(scene, derived, made.frames, hasty=hasty)
     if scene.fluid:
         made.fluid = fluid_of(scene.fluid, scene.domain, derived, device_of(scene))
     if derived.scales:

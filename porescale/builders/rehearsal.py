@@ -1,7 +1,8 @@
 """``python -m porescale.builders.rehearsal``: comes to the kernels of a scene sooner than its run does.
 
-The packing is placed loosely rather than settled; then a few steps are made, a row and a snapshot.  Nothing is written
-but kernels.  A scene that takes much memory, or names a user's own functions, is not rehearsed.
+The packing stands in rows rather than settles, and steps of a fluid begin with the fluid: while the run looks for pairs
+and settles its packing, this compiles what the run comes to last.  A few steps are made, a row and a snapshot.  Nothing
+is written but kernels.  A scene that takes much memory, or names a user's own functions, is not rehearsed.
 """
 
 from contextlib import AbstractContextManager, nullcontext
@@ -14,12 +15,10 @@ from porescale.builders.scene import Scene
 from porescale.common.compiled.ahead import ahead, serve
 from porescale.common.compiled.jit import set_threads, threads
 
-LOOSE = 0.5
-"""Packing fraction of discs that are placed apart at once."""
 LARGEST = 2.0**28
 """Bytes of the largest scene: it is held twice while its run begins."""
 STEPS = (1, 1, 2)
-"""Blocks of steps: odd and even ones have kernels of their own."""
+"""Blocks of steps, a row of the series after each: odd and even ones have kernels of their own."""
 
 
 def rehearsed(scene: Scene) -> AbstractContextManager[None]:
@@ -39,27 +38,20 @@ def rehearsed(scene: Scene) -> AbstractContextManager[None]:
     return ahead(__name__, given)
 
 
-def loosely(scene: Scene) -> Scene:
-    """The scene with discs placed apart rather than settled; not validated, since it need not be a good scene."""
-    packing = scene.grains.packing if scene.grains else None
-    if scene.grains is None or packing is None or not packing.settle:
-        return scene
-    fraction = min(LOOSE, packing.packing_fraction or LOOSE)
-    loose = packing.model_copy(update={"settle": False, "packing_fraction": fraction})
-    return scene.model_copy(update={"grains": scene.grains.model_copy(update={"packing": loose})})
-
-
 def rehearse(given: dict[str, Any]) -> None:
     """Build the scene and begin with it."""
-    from porescale.builders.build import build
+    from porescale.builders.build import system_of
+    from porescale.builders.kinds import add_parts
+    from porescale.builders.simulation import Simulation
     from porescale.common.schema.sections import validate
 
     set_threads(given["threads"])
     scene = validate(Scene, given["scene"], folder=Path(given["folder"]) if given["folder"] else None)
-    model = build(loosely(scene))
+    system = system_of(scene, hasty=True)
+    model = Simulation(system, add_parts(system))
     for steps in STEPS:
         model.advance(steps)
-    model.series()
+        model.series()
     model.snapshot()
 
 

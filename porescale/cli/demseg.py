@@ -124,8 +124,7 @@ def drive_deck(
 
 def show(folder: Path) -> list[Path]:
     """Write pictures and a film of the deck's run in ``folder``, finished or not; returns their paths."""
-    from porescale.common.pictures.film import film
-    from porescale.common.pictures.picture import pictures
+    from porescale.common.pictures.film import painted
     from porescale.common.record.open_run import open_run
     from porescale.output.deck_pictures import write_deck_pictures
     from porescale.output.show import look_of
@@ -134,7 +133,7 @@ def show(folder: Path) -> list[Path]:
     look = look_of(run)
     assert look.view
     own = write_deck_pictures(run, folder, look.view) if "contacts" in run.clouds else []
-    return [*pictures(folder, look), film(folder, look), *own]
+    return [*painted(folder, look), *own]
 
 
 def convert(

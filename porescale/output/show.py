@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 def show(folder: Path) -> list[Path]:
     """Write pictures, film, surface and profiles of the run in ``folder``; returns their paths."""
-    from porescale.common.pictures.film import film
-    from porescale.common.pictures.picture import paint_last, pictures
+    from porescale.common.pictures.film import painted
+    from porescale.common.pictures.picture import paint_last
     from porescale.common.record.open_run import open_run
     from porescale.output.breaks import write_breaks
     from porescale.output.grain_pictures import write_grain_pictures
@@ -28,7 +28,7 @@ def show(folder: Path) -> list[Path]:
     run = open_run(folder)
     scene = run.card["scene"]
     look = look_of(run)
-    written = [*pictures(folder, look), film(folder, look)]
+    written = painted(folder, look)
     fields = scene["output"].get("fields", ())
     written += [paint_last(folder, name, replace(look, field=name, label="")) for name in fields]
     if scene.get("grains") is not None:

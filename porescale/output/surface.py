@@ -10,6 +10,7 @@ import numpy as np
 from porescale.common.core.atomic import write_text
 from porescale.common.core.types import Reals
 from porescale.common.evidence.files import csv_text
+from porescale.common.record.vtkhdf import read_array
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run
@@ -25,14 +26,14 @@ def write_surface(run: Run, folder: Path) -> Path:
     height at x = X m (m) : of the surface of the pile over the bin about X, two mean diameters wide
     """
     width = run.card["scene"]["domain"]["width"]
-    first = run.snapshot(0, cells=()).clouds["grains"]
-    diameter = 2 * float(np.mean(first.data["radius"]))
+    frames = run.frames("grains")
+    diameter = 2 * float(np.mean(read_array(frames[0], "radius")))
     count = max(1, round(width / (BIN_WIDTH * diameter)))
     edges = np.linspace(0.0, width, count + 1)
     header, rows = ["time (s)", *(f"height at x = {x:.5g} m (m)" for x in 0.5 * (edges[1:] + edges[:-1]))], []
-    for k, time in enumerate(run.times):
-        cloud = run.snapshot(k, cells=()).clouds["grains"]
-        rows.append([repr(float(time)), *map(repr, surface(cloud.position, cloud.data["radius"], edges).tolist())])
+    for frame in frames:
+        found = surface(read_array(frame, "position")[:, :2], read_array(frame, "radius"), edges)
+        rows.append([repr(frame.time), *map(repr, found.tolist())])
     path = folder / "profile.csv"
     write_text(path, csv_text(header, rows))
     return path
@@ -44,10 +45,12 @@ def surface(position: Reals, radius: Reals, edges: Reals) -> Reals:
     Discs are taken at their true shape: over a bin, the highest point of the disc within it.
     """
     height = np.zeros(len(edges) - 1)
-    for (x, y), r in zip(position, radius, strict=True):
-        first = max(int(np.searchsorted(edges, x - r, side="right")) - 1, 0)
-        last = min(int(np.searchsorted(edges, x + r, side="left")), len(height))
-        for b in range(first, last):
-            off = min(max(x, edges[b]), edges[b + 1]) - x
-            height[b] = max(height[b], y + np.sqrt(max(r * r - off * off, 0.0)))
+    x, y = position.T
+    first = np.maximum(np.searchsorted(edges, x - radius, side="right") - 1, 0)
+    last = np.minimum(np.searchsorted(edges, x + radius, side="left"), len(height))
+    for further in range(int(np.max(last - first, initial=0))):  # the n-th bin that each disc reaches into
+        own = first + further < last
+        b, r = (first + further)[own], radius[own]
+        off = np.clip(x[own], edges[b], edges[b + 1]) - x[own]
+        np.maximum.at(height, b, y[own] + np.sqrt(np.maximum(r * r - off * off, 0.0)))
     return height

@@ -18,7 +18,7 @@ from porescale.builders.initial.placed import by_hand, placed
 from porescale.builders.initial.rectangles import stand_ins, take_over
 from porescale.builders.initial.rock import rock_discs, rock_frames
 from porescale.common.core.errors import InputError
-from porescale.common.neighbors.placement import place
+from porescale.common.neighbors.placement import place, square_lattice
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.forces.walls import Box, Plate
@@ -49,9 +49,12 @@ def frames_of(scene: Scene, derived: Derived) -> list[Placed]:
     return [*placed_frames(scene), *rock]
 
 
-def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Grains, list[str]]:
+def grains_of(scene: Scene, derived: Derived, frames: list[Placed], *, hasty: bool = False) -> tuple[Grains, list[str]]:
     """All discs in their order: the packing's, those placed by hand, those that are held, corners of frames; and names
-    of the bodies that are recorded."""
+    of the bodies that are recorded.
+
+    hasty : no kernel runs: the packing's discs stand in rows, and pairs are not yet looked for.
+    """
     box, law, wall_law = box_of(scene.domain), derived.law or UNTOUCHED, derived.wall_law
     plates = (
         [Plate(scene.gate.x, 0.0, scene.domain.height, friction=scene.gate.friction, name=GATE)] if scene.gate else []
@@ -63,21 +66,23 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Gra
         of_rock = rock_discs(scene, law)
         parts = [of_rock, *parts] if of_rock else parts
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law)
-    elif packing and packing.settle:
+    elif packing and packing.settle and not hasty:
         grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene.rectangle, packing)])
         say_void_ratio(packing, grains)
         if parts:
             grains = joined(grains, together(*parts))
-    elif scene.grains and packing and packing.compress:
+    elif scene.grains and packing and packing.compress and not hasty:
         grains = compressed(packing, scene.grains.density, scene.domain.periodic, law).grains
         grains = joined(grains, together(*parts)) if parts else grains
         grains.set_law(law, wall_law)
     else:
-        parts = [_placed(packing, MaterialPlan.of(scene).density(packing.material)), *parts] if packing else parts
+        if packing:
+            discs_of = _in_rows if hasty else _placed
+            parts = [discs_of(packing, MaterialPlan.of(scene).density(packing.material)), *parts]
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
         if held_alone(scene) and any(grains.box.periodic) and _crowds_its_period(grains):
             grains.reach = np.zeros(grains.discs.count)  # no pair is looked for, so that each may touch its own image
-        if grains.discs.count:  # where bodies of segments are all there is they come with lists of their own
+        if grains.discs.count and not hasty:  # where bodies of segments are all there is they bring lists of their own
             grains.refresh()  # contacts count from the first row of the series on
     if scene.rectangle:
         take_over(scene.rectangle, grains)
@@ -140,6 +145,15 @@ def _placed(packing: Packing, density: float) -> Discs:
     except InputError as error:
         raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None
     return make_discs(placed.position, placed.radius, density)
+
+
+def _in_rows(packing: Packing, density: float) -> Discs:
+    """Discs of one size on a square lattice over the packing's rectangle, as far apart as its largest."""
+    radii = radii_of(packing)
+    largest = packing.diameter * (1.0 + packing.size_spread) if radii is None else 2.0 * float(radii.max())
+    lower = packing.left, packing.bottom
+    position = square_lattice(lower, (lower[0] + packing.width, lower[1] + packing.height), 1.01 * largest)
+    return make_discs(position, np.full(len(position), 0.5 * largest), density)
 
 
 def _by_hand(scene: Scene) -> Discs:

@@ -1,6 +1,7 @@
 """A film of a run that browsers play: H.264 in MP4, or VP9 in WebM where no H.264 encoder is built in."""
 
 from collections.abc import Iterable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from PIL import Image
 from porescale.common.core.atomic import whole
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import Look
-from porescale.common.pictures.picture import Painter, painter_of
+from porescale.common.pictures.picture import Painter, painter_of, pictures
 from porescale.common.record.open_run import Run, open_run
 
 WATCHABLE = 6.0
@@ -23,17 +24,21 @@ ENCODERS: tuple[tuple[str, str, dict[str, str]], ...] = (
 )
 
 
-def film(folder: Path | str, look: Look | None = None, *, rate: int | None = None, **changes: Any) -> Path:
-    """Paint every snapshot of a run into film.mp4 (or film.webm); returns its path.
+def painted(folder: Path | str, look: Look | None = None, **changes: Any) -> list[Path]:
+    """Write the pictures of a run (`pictures`) and film.mp4 or film.webm, in the same colours; returns their paths.
 
-    rate : frames per second (None: so that it lasts about six seconds);  changes : fields of :class:`Look`.
+    changes : fields of :class:`Look`.  InputError when the run has no snapshots.
     """
     run = open_run(folder)
-    return film_of(run, painter_of(run, replace(look or Look(), **changes)), run.folder / "film", rate)
+    painter = painter_of(run, replace(look or Look(), **changes))
+    return [*pictures(run, painter), film_of(run, painter, run.folder / "film")]
 
 
 def film_of(run: Run, painter: Painter, stem: Path, rate: int | None = None) -> Path:
-    """Paint every snapshot of a run into <stem>.mp4 (or .webm); returns its path.  rate : as in `film`."""
+    """Paint every snapshot of a run into <stem>.mp4 (or .webm); returns its path.
+
+    rate : frames per second (None: so that it lasts about six seconds).
+    """
     rate = rate or rate_of(len(run))
     return write_film(stem, (painter.paint(snapshot) for snapshot in run.snapshots(painter.survey.look.cells)), rate)
 
@@ -53,18 +58,35 @@ def write_gif(path: Path, images: Iterable[AnyArray], rate: int) -> Path:
 
 
 def write_film(stem: Path, images: Iterable[AnyArray], rate: int) -> Path:
-    """Encode RGB images (even sides, all alike) into <stem>.mp4 or .webm, whole; returns the path."""
+    """Encode RGB images (even sides, all alike) into <stem>.mp4 or .webm, whole; returns the path.
+
+    A frame is encoded by a second thread while the next is painted.
+    """
     name, suffix, options = encoder()
     path = stem.with_name(stem.name + suffix)
     how = {"movflags": "+faststart"} if suffix == ".mp4" else {}
-    with whole(path) as beside, av.open(str(beside), "w", options=how) as container:
+    with (
+        whole(path) as beside,
+        av.open(str(beside), "w", options=how) as container,
+        ThreadPoolExecutor(max_workers=1) as encoding,
+    ):
         stream = container.add_stream(name, rate=rate, options=options)
         assert isinstance(stream, av.VideoStream)
         stream.pix_fmt = "yuv420p"
-        for number, image in enumerate(images):
-            if number == 0:
-                stream.height, stream.width = image.shape[:2]
+
+        def add(image: AnyArray) -> None:
+            """Encode the next frame."""
             container.mux(stream.encode(av.VideoFrame.from_ndarray(image, format="rgb24")))
+
+        under_way: Future[None] | None = None
+        for image in images:
+            if under_way is None:
+                stream.height, stream.width = image.shape[:2]
+            else:
+                under_way.result()  # one frame in memory besides that which is painted
+            under_way = encoding.submit(add, image)
+        if under_way is not None:
+            under_way.result()
         container.mux(stream.encode())
     return path
 

@@ -119,10 +119,8 @@ def surveyed(run: Run) -> list[int]:
     return sorted({*range(0, len(run), every), len(run) - 1})
 
 
-def pictures(folder: Path | str, look: Look | None = None, **changes: Any) -> list[Path]:
+def pictures(run: Run, painter: Painter) -> list[Path]:
     """Write montage.png, final.png and, if the look has them, streamlines.png; returns their paths."""
-    run = open_run(folder)
-    painter = painter_of(run, replace(look or Look(), **changes))
     cells = painter.survey.look.cells
     last = run.snapshot(-1, cells)
     made = {"final.png": painter.paint(last)}

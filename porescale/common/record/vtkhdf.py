@@ -23,7 +23,7 @@ from porescale.common.core.hdf5 import writing
 from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud, Grid
 from porescale.common.record.read_card import require_format
-from porescale.common.record.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
+from porescale.common.record.vtkhdf_cells import JOINED, NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
 
 FORMAT = 1
 """Format number that is written into these files."""
@@ -260,16 +260,16 @@ def frames_of(path: Path) -> list[Frame]:
 def read_frame(path: Path, index: int, cells: Collection[str] | None = None) -> tuple[str, str, Grid | Cloud]:
     """One frame as (kind, name, block), kind "grids" or "clouds"; of a grid only ``cells``, if named."""
     with h5py.File(path, "r") as file:
-        kind, name = _kind(file), str(file["porescale"].attrs["name"])
-        units = {key: column.units for key, column in _columns(file).items()}
+        kind, name, root = _kind(file), str(file["porescale"].attrs["name"]), file["VTKHDF"]
+        stored = dict(root["CellData" if kind == "grids" else "PointData"].items())
+        units = {key: str(item.attrs["units"]) for key, item in stored.items()}
         if kind == "grids":
             origin, spacing = _geometry(file)
-            stored = file["VTKHDF/CellData"]
             wanted = [key for key in stored if cells is None or key in cells] or list(stored)[:1]
             return kind, name, Grid(origin, spacing, {key: stored[key][index] for key in wanted}, units)
         rows = _rows(file, index)
-        data = {key: item[rows] for key, item in file["VTKHDF/PointData"].items()}
-        return kind, name, with_cells(Cloud(file["VTKHDF/Points"][rows][:, :2], data, units), read_cells(file, index))
+        cloud = Cloud(root["Points"][rows][:, :2], {key: item[rows] for key, item in stored.items()}, units)
+        return kind, name, with_cells(cloud, read_cells(file, index, JOINED))
 
 
 def read_array(frame: Frame, name: str) -> AnyArray:

@@ -4,6 +4,8 @@ Of each topology and step there are offsets from 0, one more than cells, and num
 step; ``Steps/CellOffsets`` and ``ConnectivityIdOffsets`` (nt, 4) say where a step's begin.
 """
 
+from collections.abc import Collection
+
 import h5py
 import numpy as np
 
@@ -11,6 +13,8 @@ from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud
 
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
+JOINED = ("Lines", "Polygons")
+"""Topologies that a cloud keeps: its vertices are its points."""
 Cells = dict[str, tuple[AnyArray, AnyArray]]
 """Topology -> (offsets (c + 1,), numbers of points)."""
 NO_CELLS = (np.zeros(1, np.int64), np.zeros(0, np.int64))
@@ -35,11 +39,13 @@ def cells_of(cloud: Cloud) -> Cells:
     return found
 
 
-def read_cells(file: h5py.File, index: int) -> Cells:
-    """The cells of a step, of those topologies that the file has."""
+def read_cells(file: h5py.File, index: int, wanted: Collection[str] = TOPOLOGIES) -> Cells:
+    """The cells of a step, of those topologies in ``wanted`` that the file has."""
     found: Cells = {}
     root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
     for column, name in enumerate(TOPOLOGIES):
+        if name not in wanted:
+            continue
         group = root[name]
         if group["Offsets"].shape[0] == group["NumberOfCells"].shape[0]:  # no room for a cell in any step
             continue

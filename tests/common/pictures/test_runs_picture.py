@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import InputError
-from porescale.common.pictures.film import encoder, film, write_film
+from porescale.common.pictures.film import encoder, painted, write_film
 from porescale.common.pictures.look import GRAIN, WALL, Look, length_unit, rgb, scale, survey, time_text
-from porescale.common.pictures.picture import Painter, paint, pictures
+from porescale.common.pictures.picture import Painter, paint
 from porescale.common.record import card, snapshots
 from porescale.common.record.model import Cloud, Grid, Snapshot
 from tests.reference.waiting import done
@@ -171,15 +171,15 @@ def decoded(path):
 
 
 def test_a_film_plays_frame_by_frame_what_the_painter_painted(tmp_path):
-    path = film(a_run(tmp_path), size=500)
+    path = painted(a_run(tmp_path), size=500)[-1]
     frames = decoded(path)
     assert len(frames) == 12
     assert path.stat().st_size > 5000
     run = snapshots.catalogue(tmp_path)
     look = Look(size=500, title="half a channel")
     painter = Painter(survey((snapshots.load(entry, step) for step, entry in run.items()), look))
-    painted = [painter.paint(snapshots.load(entry, step)) for step, entry in run.items()]
-    apart = np.array([[np.abs(f.astype(int) - p).mean() for p in painted] for f in frames])
+    images = [painter.paint(snapshots.load(entry, step)) for step, entry in run.items()]
+    apart = np.array([[np.abs(f.astype(int) - p).mean() for p in images] for f in frames])
     # Compression and halved colour resolution cost a few grey levels; another frame is further away.
     assert (apart.argmin(1) == np.arange(12)).all()
     assert np.diag(apart).max() < 4
@@ -190,7 +190,7 @@ def test_a_film_plays_frame_by_frame_what_the_painter_painted(tmp_path):
 
 
 def test_a_film_can_be_played_while_it_is_loaded(tmp_path):
-    path = film(a_run(tmp_path, 3), size=300)
+    path = painted(a_run(tmp_path, 3), size=300)[-1]
     content = path.read_bytes()
     assert path.suffix == ".webm" or content.index(b"moov") < content.index(b"mdat")
 
@@ -205,8 +205,9 @@ def test_without_h264_a_film_is_webm(tmp_path, monkeypatch):
 
 
 def test_pictures_are_whole_png_files(tmp_path):
-    made = pictures(a_run(tmp_path), size=600, streamlines=True)
+    *made, film = painted(a_run(tmp_path), size=600, streamlines=True)
     assert [path.name for path in made] == ["final.png", "montage.png", "streamlines.png"]
+    assert film.stem == "film"
     for path in made:
         image = cv2.imread(str(path))
         assert image is not None
@@ -217,7 +218,7 @@ def test_pictures_are_whole_png_files(tmp_path):
 def test_a_run_without_snapshots_is_told_so(tmp_path):
     card.write_card(tmp_path, {"name": "empty", "scene": {}})
     with pytest.raises(InputError, match="no snapshots"):
-        pictures(tmp_path)
+        painted(tmp_path)
 
 
 def test_painting_needs_no_display():
