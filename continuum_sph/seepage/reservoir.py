@@ -6,9 +6,19 @@ What stands in a strip is measured by its weight,
 
 so that the head on what lies below is exact, however the particles are packed.  w is 1 but for cosine ramps at the ends
 that lie in the water: a column of particles that crosses an end would else change the level by its whole share.  So
-would a row that comes out of ground at the bottom, or goes into it, and water that rises by a fraction of a row would
-be let stand as much too high: there a straight ramp takes in rows in part.  The floor of a tank has none.  A ramp that
-leaves out more than it counts makes water look sparse, and come in too near: by 7 % with one alike on both sides.
+would a row that crosses the bottom, out of ground or into it, and water that rises by a fraction of a row would be let
+stand as much too high: there a straight ramp takes in rows in part, from half the distance of rows below the bottom,
+1/√n where grains leave a porosity n, 1 in the open, to half of that above it:
+
+    from -1/(2√n) to 1/2 spacings.
+
+At rest the rows on both sides of the bottom lie at its ends, so that water has its level; where it flows what is
+counted below the bottom, n (1/(2√n))²/2, is what is left out above it, (1/2)²/2, whatever n is.  That holds in the mean
+over where rows are.  A single one on its way out of ground, 1/n from the next, is up to 0.22 rows off (n = 0.3; 0.15
+with 0.5; 0 in the open); a ramp that is exact there would be longer, and count the next row of water at rest.  Where
+only part of a strip stands over ground, n is the mean.  The floor of a tank has no ramp.  One alike on both sides over
+ground makes water look sparse, and come in too near, by 7 %; that of ground, n = 0.4, counts 0.15 rows too many in the
+open.
 
 While more than half a particle is missing one is put on the lowest place of the surface, at rest, unless that stands
 far over the level already; while more than half a particle is over the highest of the strip is taken out.  A level at
@@ -24,7 +34,7 @@ far from each other and from all else that they have no neighbours.  A row witho
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,10 +42,8 @@ from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.types import Floats
 
-BELOW, ABOVE = 0.8, 0.5
-"""Spacings below and above the bottom between which a row is taken in: half the distance of rows among grains, 1/√n,
-and in the open, n = 0.4.  So water at rest has its level, and where it flows what is left out above the bottom,
-ABOVE²/2, is what is counted below it, n BELOW²/2: to 0.03 rows for n from 0.3 to 0.5."""
+HALF = 0.5  # of the distance between two rows
+LEAST_POROSITY = 0.05  # of what lies below a strip, as of `mixture`
 RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
 BERTH = 1.5  # cutoffs between berths
 HEAP = 0.1
@@ -60,21 +68,33 @@ def park_waiting(fluid, x, v, mass, density, predicted, berth, density0):
             predicted[i] = density0
 
 
-@kernel
-def measure_strip(fluid, x, mass, material, left, right, ramp_left, ramp_right, bottom, spacing, least, tops):
-    """(Σ w m over the strip above its bottom, kg/m;  number of its highest particle of a w over
-    ``least``, -1 for none);  overwrites ``tops``
-    (columns,) m, the highest particle near the middle of each column of the strip, half a spacing below the bottom
-    where there is none.
+class Strip(NamedTuple):
+    """Where water is weighed, m: ends and the ramps beside them; bottom, how far ``below`` it a row is taken in by
+    parts, 0 on the floor of a tank, and how far above it, ``half`` a spacing."""
 
-    x (n, 2) m;  mass (n,) kg/m, 0: not there;  material (n,), water is 0;  left, right, bottom, ramps, spacing: m.
+    left: float
+    right: float
+    ramp_left: float
+    ramp_right: float
+    bottom: float
+    below: float
+    half: float
+
+
+@kernel
+def measure_strip(fluid, x, mass, material, strip, least, tops):
+    """(Σ w m over the ``strip`` above its bottom, kg/m;  number of its highest particle of a w over ``least``, -1 for
+    none);  overwrites ``tops`` (columns,) m, the highest particle near the middle of each column of the strip, half a
+    spacing below the bottom where there is none.
+
+    x (n, 2) m;  mass (n,) kg/m, 0: not there;  material (n,), water is 0;  strip: a `Strip`, m.
     """
+    left, right, ramp_left, ramp_right, bottom, below, half = strip
     columns = tops.shape[0]
     breadth = (right - left) / columns
-    below = BELOW * spacing if bottom > 0.0 else 0.0
-    inverse = 1.0 / ((BELOW + ABOVE) * spacing)
+    inverse = 1.0 / (below + half)
     for c in range(columns):
-        tops[c] = bottom - 0.5 * spacing
+        tops[c] = bottom - half
     total = 0.0
     highest = -1
     for i in range(fluid):
@@ -107,7 +127,8 @@ class Reservoir:
 
     left, right, bottom : m;  times (k,) s and levels (k,) m : straight lines between them, constant before and after;
     walls : whether each end lies at a wall of the tank;  let_in, let_out : mass recorded so far, kg/m;  level : of the
-    last step, m;  stood : that of the first, m;  full : kg/m² of the strip to a metre of level.
+    last step, m;  stood : that of the first, m;  full : kg/m² of the strip to a metre of level;  porosity : of what
+    lies below the bottom at the start, 1 for open water;  strip : where it is weighed.
     """
 
     name: str
@@ -124,6 +145,8 @@ class Reservoir:
     full: float = 0.0
     tops: Floats = field(default_factory=lambda: np.zeros(0))
     ramps: tuple[float, float] = (0.0, 0.0)
+    porosity: float = 1.0
+    strip: Strip = field(init=False)
 
     def fit(self, spacing: float, density: float) -> None:
         """Columns and ramps for particles of a ``spacing``, m, and a ``density``, kg/m³."""
@@ -132,6 +155,8 @@ class Reservoir:
         ramp = min(RAMP * spacing, 0.5 * breadth)
         self.ramps = (0.0 if self.walls[0] else ramp, 0.0 if self.walls[1] else ramp)
         self.full = density * self.width
+        below = HALF * spacing / max(LEAST_POROSITY, self.porosity) ** 0.5 if self.bottom > 0.0 else 0.0
+        self.strip = Strip(self.left, self.right, *self.ramps, self.bottom, below, HALF * spacing)
 
     @property
     def width(self) -> float:
@@ -185,8 +210,8 @@ class Supply:
         layer, target, full = self.layer, pool.wanted(time), pool.full
         while True:
             held, highest = measure_strip(
-                layer.fluid, layer.x, layer.mass, layer.material, pool.left, pool.right, *pool.ramps, pool.bottom,
-                self.spacing, -1.0 if target <= pool.bottom else 0.5, pool.tops,
+                layer.fluid, layer.x, layer.mass, layer.material, pool.strip, -1.0 if target <= pool.bottom else 0.5,
+                pool.tops,
             )  # fmt: skip
             over = held - full * (target - pool.bottom)
             pool.level = pool.bottom + held / full

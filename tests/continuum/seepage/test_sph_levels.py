@@ -7,9 +7,10 @@ from continuum_sph.builders.parts.instruments import MeasuredWater, discharge
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
+from continuum_sph.scene.reservoir import ReservoirSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply
-from continuum_sph.seepage.reservoir import ABOVE, BELOW, CLOSER, HEAP, berths, measure_strip, park_waiting
+from continuum_sph.seepage.reservoir import CLOSER, HEAP, berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
@@ -39,18 +40,7 @@ def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are(
         given = supply(pool(0.4, left=0.5, right=1.6, walls=(False, False)))
         strip, layer = given.reservoirs[0], given.layer
         layer.x[:, 0] += shift * SPACING
-        where = (
-            layer.fluid,
-            layer.x,
-            layer.mass,
-            layer.material,
-            strip.left,
-            strip.right,
-            *strip.ramps,
-            0.0,
-            SPACING,
-            0.5,
-        )
+        where = layer.fluid, layer.x, layer.mass, layer.material, strip.strip, 0.5
         held, highest = measure_strip(*where, strip.tops)
         # the trapezoidal rule over cosine ramps of 3 spacings: its first harmonic, 1/{π (2·3)² - …} of a spacing a ramp
         assert held / (1000.0 * strip.width) == pytest.approx(0.4, abs=0.4 * 2 * 0.02 / (strip.width / SPACING))
@@ -61,36 +51,114 @@ def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are(
         assert np.array_equal(slow, strip.tops)
 
 
-def held_over_ground(rows, spacing=SPACING):
-    """Rows of water held by a strip a spacing wide over a bottom at 0.5 m;  rows (k,): spacings over that."""
+OLD = (0.5 / 0.8) ** 2  # porosity whose half a row, 0.8 spacings, was taken for that of all ground, and open water
+
+
+def held_over(rows, porosity, *, spacing=SPACING, weight=1.0):
+    """Rows of water held by a strip a spacing wide over a bottom at 0.5 m, whose ramp is that of ``porosity``.
+
+    rows (k,): spacings over it;  weight (k,): of a particle.
+    """
+    strip = Reservoir("pool", 0.0, spacing, 0.5, np.zeros(1), np.ones(1), (True, True), porosity=porosity)
+    strip.fit(spacing, 1000.0)
     x = np.column_stack((np.full(len(rows), 0.5 * spacing), 0.5 + np.asarray(rows) * spacing))
-    mass = np.full(len(rows), 1000.0 * spacing**2)
-    where = (len(rows), x, mass, np.zeros(len(rows), np.int64), 0.0, spacing, 0.0, 0.0)
-    held, highest = measure_strip(*where, 0.5, spacing, 0.5, np.zeros(1))
+    mass = np.full(len(rows), 1000.0 * spacing**2) * weight
+    held, highest = measure_strip(len(rows), x, mass, np.zeros(len(rows), np.int64), strip.strip, 0.5, np.zeros(1))
     assert highest == int(np.argmax(rows))
-    # The twin: on the floor of a tank a row counts as a whole.
-    x[:, 1] -= 0.5
-    assert measure_strip(*where, 0.0, spacing, 0.5, np.zeros(1))[0] == pytest.approx(mass[0] * np.sum(x[:, 1] > 0.0))
-    return held / mass[0]
+    return held / (1000.0 * spacing**2)
 
 
-def test_water_at_rest_on_ground_has_its_level():
-    above, apart = np.arange(6) + 0.5, 1.0 / 0.4**0.5
-    rows = np.concatenate((above, -apart * above))
-    # what lies below reaches BELOW - apart/2 into the ramp
-    assert held_over_ground(rows) == pytest.approx(6.0, abs=1.01 * (BELOW - 0.5 * apart) / (BELOW + ABOVE))
+def test_on_the_floor_of_a_tank_a_row_counts_as_a_whole():
+    strip = Reservoir("pool", 0.0, SPACING, 0.0, np.zeros(1), np.ones(1), (True, True), porosity=0.4)
+    strip.fit(SPACING, 1000.0)
+    for above in (0.01, 0.3, 0.7):
+        x, mass = np.array([[0.5 * SPACING, above * SPACING]]), np.full(1, 10.0)
+        assert measure_strip(1, x, mass, np.zeros(1, np.int64), strip.strip, 0.5, np.zeros(1))[0] == 10.0
+        assert held_over([above], 0.4) == pytest.approx(min(1.0, (above + 0.5 / 0.4**0.5) / (0.5 + 0.5 / 0.4**0.5)))
 
 
-@pytest.mark.parametrize("porosity", [0.3, 0.4, 0.5])
-def test_a_row_that_comes_out_of_the_ground_is_taken_in_as_it_comes(porosity):
-    passed, left_out = (np.arange(50) + 0.5) / 50.0, []
-    for part in passed:  # of a row, whose rows are n times as near once they are out
-        way = 3.5 + part - np.arange(9)
-        left_out.append(held_over_ground(np.where(way > 0.0, way, way / porosity)) - 4.0 - part)
-    # what the ramp counts below the bottom, n BELOW²/2, less what it leaves out above it, ABOVE²/2, over its length
-    assert np.mean(left_out) == pytest.approx((porosity * BELOW**2 - ABOVE**2) / 2.0 / (BELOW + ABOVE), abs=0.01)
-    assert abs(np.mean(left_out)) < 0.03
-    assert np.ptp(left_out) < 0.5  # the twin, of whole rows, has 1
+def at_rest(porosity):
+    """Heights (12,) in spacings over the bottom, and weights, of six rows over six below it, which are 1/√n apart in
+    both directions: √n of them to a column of the open."""
+    above, apart = np.arange(6) + 0.5, 1.0 / porosity**0.5
+    return np.concatenate((above, -apart * above)), np.repeat((1.0, 1.0 / apart), 6)
+
+
+@pytest.mark.parametrize("porosity", [0.05, 0.3, 0.4, 0.5, 0.7, 1.0])
+def test_water_at_rest_has_its_level_over_any_ground(porosity):
+    rows, weight = at_rest(porosity)
+    assert held_over(rows, porosity, weight=weight) == pytest.approx(6.0, abs=1e-12)  # round-off of 0.5 m
+
+
+def test_the_ramp_of_ground_counts_too_much_water_in_the_open():
+    # the twin that must fail: the row below has 0.3 of a ramp of 1.3 spacings
+    rows, weight = at_rest(1.0)
+    assert held_over(rows, OLD, weight=weight) - 6.0 == pytest.approx(0.3 / 1.3, rel=1e-9)
+
+
+def off_on_its_way(porosity, ramp):
+    """By how many rows too much is held of water that rises by a row out of ground, (50,): over its way."""
+    off = []
+    for part in (np.arange(50) + 0.5) / 50.0:  # of a row, whose rows are n times as near once they are out
+        way = 3.5 + part - np.arange(60)
+        off.append(held_over(np.where(way > 0.0, way, way / porosity), ramp) - 4.0 - part)
+    return np.array(off)
+
+
+@pytest.mark.parametrize("porosity", [0.3, 0.4, 0.5, 1.0])
+def test_a_row_that_crosses_the_bottom_is_taken_in_as_it_comes(porosity):
+    off = off_on_its_way(porosity, porosity)
+    # the midpoint rule over 50 places of a line with kinks: (1/50)² of a row, times its slope, 1/n
+    assert abs(off.mean()) < (1.0 / 50.0) ** 2 / porosity
+    # at the lower end of the ramp a row counts nothing, and 1/2 (1 - √n) of it has come; whole rows are off by 1/2
+    assert np.abs(off).max() < 0.5 * (1.0 - porosity**0.5) + 1e-12
+
+
+def test_the_ramp_of_ground_takes_in_rows_too_early_in_the_open():
+    # the twin that must fail: (0.8²/2 - 0.5²/2)/1.3
+    assert off_on_its_way(1.0, OLD).mean() == pytest.approx((0.8**2 - 0.5**2) / 2.6, abs=1e-3)
+
+
+def test_a_strip_of_which_half_stands_over_ground_has_the_ramp_of_its_mean_porosity():
+    for porosity in (0.3, 0.4, 0.5):
+        mean = 0.5 * (porosity + 1.0)
+        off = [off_on_its_way(beneath, mean).mean() for beneath in (porosity, 1.0)]
+        assert abs(np.mean(off)) < (1.0 / 50.0) ** 2 / porosity
+        # the twin: the ramp of the ground alone
+        assert np.mean([off_on_its_way(beneath, porosity).mean() for beneath in (porosity, 1.0)]) > 0.03
+
+
+def test_a_reservoir_knows_what_lies_below_its_bottom():
+    body = {"outline": [[0.3, 0], [0.7, 0], [0.7, 0.2], [0.3, 0.2]]}
+    soil = scene(soil={"porosity": 0.3, "permeability": 0.05, "body": [body]}, reservoir=[]).soil
+
+    def porosity(left, right, bottom):
+        return ReservoirSection(left=left, right=right, bottom=bottom, level=0.28).porosity(soil, 0.02)
+
+    assert porosity(0.4, 0.6, 0.2) == pytest.approx(0.3)
+    assert porosity(0.4, 0.6, 0.208) == pytest.approx(0.3)  # the row below it lies in the ground
+    assert porosity(0.4, 0.6, 0.212) == 1.0  # and here over it
+    assert porosity(0.1, 0.2, 0.2) == 1.0
+    assert porosity(0.6, 0.8, 0.2) == pytest.approx(0.65)  # half of it over ground
+
+
+def off_in_the_open():
+    """Rows by which a reservoir whose bottom lies in open water, four rows over ground, finds it too deep at first."""
+    model = Simulation(
+        scene(
+            water={"column": [{"width": 0.8, "height": 0.24}], "sound_speed": 30.0},
+            soil={"held": True, "body": [{"outline": [[0, 0], [0.8, 0], [0.8, 0.08], [0, 0.08]]}]},
+            reservoir=[{"name": "pool", "left": 0.0, "right": 0.2, "bottom": 0.16, "level": 0.24}],
+        )
+    )
+    return (model.flow.supply.reservoirs[0].stood - 0.24) / 0.02
+
+
+def test_a_reservoir_that_begins_in_open_water_has_its_level(monkeypatch):
+    # what remains: 0.24 m of water are 3e-3 denser than it is at rest under its own weight in the mean, of four rows
+    assert abs(off_in_the_open()) < 0.03
+    monkeypatch.setattr(ReservoirSection, "porosity", lambda *_: OLD)
+    assert off_in_the_open() > 0.15  # the twin that must fail
 
 
 def test_what_has_passed_on_has_no_steps_of_whole_particles():
@@ -168,8 +236,7 @@ def test_water_that_splashes_over_a_strip_brings_new_water_no_nearer_than_a_heap
     layer, before = given.layer, given.layer.mass > 0.0
     layer.x[np.flatnonzero(before & (layer.x[:, 1] > 0.3))[::2], 1] += 1.0  # every second of the highest row
     strip = given.reservoirs[0]
-    where = strip.left, strip.right, *strip.ramps, strip.bottom, SPACING, 0.5
-    measure_strip(layer.fluid, layer.x, layer.mass, layer.material, *where, strip.tops)
+    measure_strip(layer.fluid, layer.x, layer.mass, layer.material, strip.strip, 0.5, strip.tops)
     surface = strip.tops.mean() + 0.5 * SPACING
     given.keep(0.0)
     new = (layer.mass > 0.0) & ~before
