@@ -20,13 +20,15 @@ only part of a strip stands over ground, n is the mean.  The floor of a tank has
 ground makes water look sparse, and come in too near, by 7 %; that of ground, n = 0.4, counts 0.15 rows too many in the
 open.
 
-While more than half a particle is missing one is put on the lowest place of the surface, at rest, unless that stands
-far over the level already; while more than half a particle is over the highest of the strip is taken out.  A level at
-the bottom takes out whatever comes.
+While more than half a particle is missing one is put on the lowest place of the surface, at rest or as fast as the
+surface there sinks, unless that stands far over the level already; while more than half a particle is over the highest
+of the strip is taken out.  A level at the bottom takes out whatever comes.
 
 A particle is put a spacing above what is below it, and nearer by the cube of level over surface where what stands in
 the strip is sparse.  Water would else come in sparser than it is, by 5 %, stand so much higher, and press the more on
-what lies beside it: the discharge of a dam, right up to 21 s, is 2.6 % too large up to 35.
+what lies beside it: the discharge of a dam, right up to 21 s, is 2.6 % too large up to 35.  Put at rest on water that
+runs off below, it would fall after that: a river that rises fast would be half as dense over a third of its depth, and
+stand up to a quarter higher than it weighs.
 
 Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
 far from each other and from all else that they have no neighbours.  A row without mass is a waiting particle.
@@ -82,12 +84,12 @@ class Strip(NamedTuple):
 
 
 @kernel
-def measure_strip(fluid, x, mass, material, strip, least, tops):
+def measure_strip(fluid, x, v, mass, material, strip, least, tops, sinking):
     """(Σ w m over the ``strip`` above its bottom, kg/m;  number of its highest particle of a w over ``least``, -1 for
     none);  overwrites ``tops`` (columns,) m, the highest particle near the middle of each column of the strip, half a
-    spacing below the bottom where there is none.
+    spacing below the bottom where there is none, and ``sinking`` (columns,) m/s, its upright velocity if down, else 0.
 
-    x (n, 2) m;  mass (n,) kg/m, 0: not there;  material (n,), water is 0;  strip: a `Strip`, m.
+    x (n, 2) m;  v (n, 2) m/s;  mass (n,) kg/m, 0: not there;  material (n,), water is 0;  strip: a `Strip`, m.
     """
     left, right, ramp_left, ramp_right, bottom, below, half = strip
     columns = tops.shape[0]
@@ -95,6 +97,7 @@ def measure_strip(fluid, x, mass, material, strip, least, tops):
     inverse = 1.0 / (below + half)
     for c in range(columns):
         tops[c] = bottom - half
+        sinking[c] = 0.0
     total = 0.0
     highest = -1
     for i in range(fluid):
@@ -116,8 +119,9 @@ def measure_strip(fluid, x, mass, material, strip, least, tops):
         at = (x[i, 0] - left) / breadth
         first = max(0, int(np.floor(at - 1.25)))
         for c in range(first, min(columns, first + 3)):
-            if abs(at - c - 0.5) < 0.75:
-                tops[c] = max(tops[c], x[i, 1])
+            if abs(at - c - 0.5) < 0.75 and x[i, 1] > tops[c]:
+                tops[c] = x[i, 1]
+                sinking[c] = min(0.0, v[i, 1])
     return total, highest
 
 
@@ -144,6 +148,7 @@ class Reservoir:
     stood: float = field(default=float("nan"))
     full: float = 0.0
     tops: Floats = field(default_factory=lambda: np.zeros(0))
+    sinking: Floats = field(default_factory=lambda: np.zeros(0))
     ramps: tuple[float, float] = (0.0, 0.0)
     porosity: float = 1.0
     strip: Strip = field(init=False)
@@ -151,7 +156,7 @@ class Reservoir:
     def fit(self, spacing: float, density: float) -> None:
         """Columns and ramps for particles of a ``spacing``, m, and a ``density``, kg/m³."""
         breadth = self.right - self.left
-        self.tops = np.zeros(max(1, round(breadth / spacing)))
+        self.tops, self.sinking = np.zeros((2, max(1, round(breadth / spacing))))
         ramp = min(RAMP * spacing, 0.5 * breadth)
         self.ramps = (0.0 if self.walls[0] else ramp, 0.0 if self.walls[1] else ramp)
         self.full = density * self.width
@@ -210,8 +215,8 @@ class Supply:
         layer, target, full = self.layer, pool.wanted(time), pool.full
         while True:
             held, highest = measure_strip(
-                layer.fluid, layer.x, layer.mass, layer.material, pool.strip, -1.0 if target <= pool.bottom else 0.5,
-                pool.tops,
+                layer.fluid, layer.x, layer.v, layer.mass, layer.material, pool.strip,
+                -1.0 if target <= pool.bottom else 0.5, pool.tops, pool.sinking,
             )  # fmt: skip
             over = held - full * (target - pool.bottom)
             pool.level = pool.bottom + held / full
@@ -241,7 +246,8 @@ class Supply:
                 break
             height = pool.tops[c] = pool.tops[c] + apart
             layer.x[i] = pool.left + (c + 0.5) * (pool.right - pool.left) / columns, height
-            layer.v[i] = layer.smoothed[i] = layer.drift[i] = 0.0
+            layer.v[i] = layer.smoothed[i] = 0.0, pool.sinking[c]
+            layer.drift[i] = 0.0
             depth = max(0.0, target - height)
             layer.density[i] = layer.predicted[i] = self.density * (
                 1.0 + self.density * self.gravity * depth / self.stiffness

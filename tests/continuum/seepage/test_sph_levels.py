@@ -40,15 +40,21 @@ def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are(
         given = supply(pool(0.4, left=0.5, right=1.6, walls=(False, False)))
         strip, layer = given.reservoirs[0], given.layer
         layer.x[:, 0] += shift * SPACING
-        where = layer.fluid, layer.x, layer.mass, layer.material, strip.strip, 0.5
-        held, highest = measure_strip(*where, strip.tops)
+        layer.v[:, 1] = layer.x[:, 0] - 1.0
+        where = layer.fluid, layer.x, layer.v, layer.mass, layer.material, strip.strip, 0.5
+        held, highest = measure_strip(*where, strip.tops, strip.sinking)
         # the trapezoidal rule over cosine ramps of 3 spacings: its first harmonic, 1/{π (2·3)² - …} of a spacing a ramp
         assert held / (1000.0 * strip.width) == pytest.approx(0.4, abs=0.4 * 2 * 0.02 / (strip.width / SPACING))
         assert layer.x[highest, 1] == pytest.approx(0.35)
         np.testing.assert_allclose(strip.tops, 0.35)
-        slow = np.zeros_like(strip.tops)
-        assert measure_strip.py_func(*where, slow) == (pytest.approx(held, rel=1e-14), highest)
+        columns = 0.5 + (np.arange(len(strip.tops)) + 0.5) * 1.1 / len(strip.tops)
+        assert (strip.sinking <= 0.0).all()
+        # of a particle within three quarters of a column
+        np.testing.assert_allclose(strip.sinking, np.minimum(0.0, columns - 1.0), atol=0.75 * SPACING)
+        slow, sinking = np.zeros_like(strip.tops), np.ones_like(strip.tops)
+        assert measure_strip.py_func(*where, slow, sinking) == (pytest.approx(held, rel=1e-14), highest)
         assert np.array_equal(slow, strip.tops)
+        assert np.array_equal(sinking, strip.sinking)
 
 
 OLD = (0.5 / 0.8) ** 2  # porosity whose half a row, 0.8 spacings, was taken for that of all ground, and open water
@@ -63,7 +69,8 @@ def held_over(rows, porosity, *, spacing=SPACING, weight=1.0):
     strip.fit(spacing, 1000.0)
     x = np.column_stack((np.full(len(rows), 0.5 * spacing), 0.5 + np.asarray(rows) * spacing))
     mass = np.full(len(rows), 1000.0 * spacing**2) * weight
-    held, highest = measure_strip(len(rows), x, mass, np.zeros(len(rows), np.int64), strip.strip, 0.5, np.zeros(1))
+    kind, still = np.zeros(len(rows), np.int64), np.zeros_like(x)
+    held, highest = measure_strip(len(rows), x, still, mass, kind, strip.strip, 0.5, *np.zeros((2, 1)))
     assert highest == int(np.argmax(rows))
     return held / (1000.0 * spacing**2)
 
@@ -73,7 +80,8 @@ def test_on_the_floor_of_a_tank_a_row_counts_as_a_whole():
     strip.fit(SPACING, 1000.0)
     for above in (0.01, 0.3, 0.7):
         x, mass = np.array([[0.5 * SPACING, above * SPACING]]), np.full(1, 10.0)
-        assert measure_strip(1, x, mass, np.zeros(1, np.int64), strip.strip, 0.5, np.zeros(1))[0] == 10.0
+        kind, still = np.zeros(1, np.int64), np.zeros((1, 2))
+        assert measure_strip(1, x, still, mass, kind, strip.strip, 0.5, *np.zeros((2, 1)))[0] == 10.0
         assert held_over([above], 0.4) == pytest.approx(min(1.0, (above + 0.5 / 0.4**0.5) / (0.5 + 0.5 / 0.4**0.5)))
 
 
@@ -231,12 +239,26 @@ def test_new_water_is_put_nearer_where_what_stands_there_is_sparse(stretch):
     assert (stretch == 1.0) == np.allclose(layer.x[new, 1], top + SPACING)  # the twin: a spacing, however sparse
 
 
+@pytest.mark.parametrize("speed", [-0.7, 0.0, 0.7])
+def test_new_water_sinks_with_the_surface_that_it_is_put_on(speed):
+    given = supply(pool(0.5, right=2.0, walls=(True, True)))
+    layer, before = given.layer, given.layer.mass > 0.0
+    layer.v[before] = 0.3, speed
+    given.keep(0.0)
+    new = (layer.mass > 0.0) & ~before
+    assert new.sum() == 20
+    for velocity in (layer.v, layer.smoothed):
+        assert (velocity[:, 0][new] == 0.0).all()
+        assert (velocity[:, 1][new] == min(0.0, speed)).all()
+
+
 def test_water_that_splashes_over_a_strip_brings_new_water_no_nearer_than_a_heap_does():
     given = supply(pool(0.5, right=2.0, walls=(True, True)))
     layer, before = given.layer, given.layer.mass > 0.0
     layer.x[np.flatnonzero(before & (layer.x[:, 1] > 0.3))[::2], 1] += 1.0  # every second of the highest row
     strip = given.reservoirs[0]
-    measure_strip(layer.fluid, layer.x, layer.mass, layer.material, strip.strip, 0.5, strip.tops)
+    where = layer.fluid, layer.x, layer.v, layer.mass, layer.material, strip.strip, 0.5
+    measure_strip(*where, strip.tops, strip.sinking)
     surface = strip.tops.mean() + 0.5 * SPACING
     given.keep(0.0)
     new = (layer.mass > 0.0) & ~before
