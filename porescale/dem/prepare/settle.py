@@ -50,6 +50,7 @@ HIGHER, ROUGHLY = 50, 0.05
 """Times that a rectangle is made higher for what stands in it, and by how many diameters at least."""
 LOOSER = (1.0, 0.9, 0.8, 0.7)
 """Of the fraction of a pile, at which it is placed among obstacles: pores at their rims are wide."""
+AMONG = 5  # times more of them among obstacles: grains run out of a funnel one after another
 UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile, InputError)
 """What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""
 
@@ -163,7 +164,8 @@ def come_to_rest(
     dt = grains.stable_step(steps_per_contact=0.0)
     rest = energy * gravity * diameter * float(discs.mass[:free].sum())
     mean = float(discs.mass[:free].mean()), float(discs.radius[:free].mean())
-    chunks = math.ceil(PATIENCE * max(stable_step(grains.laws, *mean, steps_per_contact=0.0) / dt, 1.0))
+    patience = PATIENCE * (1 if free is None or free == discs.count else AMONG)
+    chunks = math.ceil(patience * max(stable_step(grains.laws, *mean, steps_per_contact=0.0) / dt, 1.0))
     for _ in range(chunks):
         grains.step(dt, weights, None, CHUNK, drag)
         grains.check()
