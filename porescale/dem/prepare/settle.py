@@ -48,9 +48,10 @@ PATIENCE = 400  # chunks of steps that suit the mean grain, before settling give
 EDGE = 1e-9  # relative slack of the height of a box
 HIGHER, ROUGHLY = 50, 0.05
 """Times that a rectangle is made higher for what stands in it, and by how many diameters at least."""
+WEDGED = ": gaps beside what stands there that are about as wide as a grain wedge some, so widen or close them"
+"""What is said where grains do not come to rest among obstacles."""
 LOOSER = (1.0, 0.9, 0.8, 0.7)
 """Of the fraction of a pile, at which it is placed among obstacles: pores at their rims are wide."""
-AMONG = 5  # times more of them among obstacles: grains run out of a funnel one after another
 UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile, InputError)
 """What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""
 
@@ -164,8 +165,7 @@ def come_to_rest(
     dt = grains.stable_step(steps_per_contact=0.0)
     rest = energy * gravity * diameter * float(discs.mass[:free].sum())
     mean = float(discs.mass[:free].mean()), float(discs.radius[:free].mean())
-    patience = PATIENCE * (1 if free is None or free == discs.count else AMONG)
-    chunks = math.ceil(patience * max(stable_step(grains.laws, *mean, steps_per_contact=0.0) / dt, 1.0))
+    chunks = math.ceil(PATIENCE * max(stable_step(grains.laws, *mean, steps_per_contact=0.0) / dt, 1.0))
     for _ in range(chunks):
         grains.step(dt, weights, None, CHUNK, drag)
         grains.check()
@@ -175,7 +175,7 @@ def come_to_rest(
         raise PorescaleError(
             f"the packing did not come to rest in {chunks * CHUNK} steps: kinetic energy "
             f"{kinetic_energy(discs) / rest * energy:.2g} m g d per grain, "
-            f"net force {unbalanced(grains, free):.2g} of weight"
+            f"net force {unbalanced(grains, free):.2g} of weight{WEDGED if free not in (None, discs.count) else ''}"
         )
     discs.velocity[:] = 0.0
     discs.spin[:] = 0.0
