@@ -27,8 +27,7 @@ def write_permeability(run: Run, folder: Path) -> list[Path]:
     if not run.card["scene"].get("permeability"):
         return []
     scene = validate(Scene, run.card["scene"])
-    assert scene.grains
-    ratio = scene.grains.hydraulic_radius_ratio or 1.0
+    ratio = (scene.grains.hydraulic_radius_ratio if scene.grains else None) or 1.0
     rows = []
     for k in sorted({0, len(run) - 1}):
         snapshot = run.snapshot(k, cells=("velocity",))

@@ -20,6 +20,8 @@ class Packing(Section):
     the end, friction and seed decide.  With settle = false they stay where they were placed (packing_fraction at most
     0.8); with compress = true they are grown and pressed together in the whole box until it has that fraction, or void
     ratio, to round-off.
+
+    Around bodies in the rectangle, which are held meanwhile, there are as many grains as without them.
     """
 
     follows: ClassVar[Mapping[str, str]] = dict.fromkeys(

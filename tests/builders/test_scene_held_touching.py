@@ -105,7 +105,8 @@ PACKED = {
     ],
     ids=["polygon", "disc", "grain"],
 )
-def test_check_refuses_what_stands_in_the_packing(more):
-    check, run = refusals(dry(grains__packing=PACKED, **more))
-    assert "a grain of the packing" in check, check
+def test_a_packing_is_made_around_what_stands_in_it_where_there_is_room(more):
+    assert refusals(dry(grains__packing=PACKED, **more)) == ["", ""]
+    check, run = refusals(dry(grains__packing={**PACKED, "packing_fraction": 0.79}, **more))
+    assert "do not fit beside what stands in it" in check, check
     assert check == run

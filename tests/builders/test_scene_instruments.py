@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from porescale.analysis.bed_permeability import write_permeability
 from porescale.analysis.permeability import gebart, kozeny_carman, measure
 from porescale.builders.build import build
 from porescale.builders.parts.flow_fields import vorticity
@@ -236,6 +237,25 @@ def test_permeability_of_a_square_array_is_what_its_drag_says():
     assert upward.permeability == pytest.approx(found.permeability, rel=1e-12)  # the same cells, transposed
     smaller = measure(place, np.array([0.9 * radius]), (0.0, 0.0), (size, size), 1.0, **box)
     assert smaller.permeability > 1.2 * found.permeability  # the twin that must fail
+
+
+def test_held_discs_alone_have_a_permeability(tmp_path):
+    # The array above, four times, of discs that a scene holds, 5 cells across.
+    size, c = 0.002, 0.2
+    diameter = 2.0 * size * math.sqrt(c / math.pi)
+    held = [{"x": (i + 0.51) * size, "y": (j + 0.5) * size, "diameter": diameter} for i in (0, 1) for j in (0, 1)]
+    box = {"domain__width": 2 * size, "domain__height": 2 * size, "domain__top": "periodic"}
+    window = {"left": 0.0, "bottom": 0.0, "width": 2 * size, "height": 2 * size}
+    scene = water(disc=held, **box, domain__bottom="periodic", permeability={"window": window, "direction": "x"},
+                  time__end=0.004)  # fmt: skip
+    drive(build(scene), tmp_path, 0.004, snapshot_interval=0.004, series_interval=0.004,
+          card={"scene": scene_as_dict(scene)}, quiet=True)  # fmt: skip
+    run = open_run(tmp_path)
+    assert write_permeability(run, tmp_path) == [tmp_path / "permeability.csv"]
+    found = run.table("permeability")
+    # 2 % at ten cells, at first order 4 % at five.
+    assert found["permeability (m²)"] == pytest.approx([size**2 / 51.53] * 2, rel=0.05)
+    assert found["hydraulic solid fraction ()"] == pytest.approx([c] * 2, rel=1e-6)
 
 
 def test_a_window_of_an_array_has_the_permeability_of_the_array():

@@ -51,9 +51,12 @@ def test_a_bed_that_forgets_its_springs_moves():
     assert np.abs(moved(forgetful, count)).max() > 10 * np.abs(moved(alone, count)).max()
 
 
-def test_a_grain_placed_into_a_settled_bed_is_named():
+def test_a_grain_beside_the_rectangle_that_a_bed_settles_into_is_named():
+    beside = {**BED, "width": 0.0035}  # 0.5 mm of it left to the wall
+    placed = [grain(0.003, 0.005), grain(0.01175, 0.002, 0.0004)]
+    scene = dry(grains={"density": 2500, "packing": beside, "grain": placed}, gate=GATE)
     with pytest.raises(InputError) as caught:
-        bed(grain(0.003, 0.005), grain(0.01, 0.002))
+        build(scene)
     (fault,) = caught.value.faults
     assert fault.line().startswith("grains.grain[1]: overlaps a grain of the packing by ")
 

@@ -262,11 +262,11 @@ def test_grains_across_a_periodic_side_are_inside_and_overlap_through_it():
         build(hand(grain(0.0118, 0.004), grain(0.0002, 0.004), **sides))
 
 
-def test_a_grain_placed_into_a_packing_is_named_by_its_own_number():
+def test_a_grain_placed_into_another_beside_a_packing_is_named_by_its_own_number():
     packing = table()["grains"]["packing"] | {"settle": False, "packing_fraction": 0.6}
-    both = {"density": 2500, "packing": packing, "grain": [grain(0.003, 0.004), grain(0.01, 0.0025, 0.003)]}
-    (line,) = refusals(lambda: build(dry(grains=both)))
-    assert line.startswith("grains.grain[1]: overlaps a grain of the packing by ")
+    placed = [grain(0.003, 0.004), grain(0.01, 0.0025), grain(0.0105, 0.0025)]
+    (line,) = refusals(lambda: build(dry(grains={"density": 2500, "packing": packing, "grain": placed})))
+    assert line.startswith("grains.grain[2]: overlaps grain 1 by 0.0005 m")
 
 
 def test_a_packing_needs_head_room_to_settle_from():

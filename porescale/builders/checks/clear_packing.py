@@ -4,6 +4,7 @@ import numpy as np
 
 from porescale.builders.derive import Derived
 from porescale.builders.initial.grains import frames_of, grains_of
+from porescale.builders.initial.obstacles import obstacles_of
 from porescale.builders.initial.placed import placed
 from porescale.scene.scene import Scene
 
@@ -19,6 +20,9 @@ def require_clear_packing(scene: Scene, derived: Derived) -> None:
         return
     _, x, r = placed(scene)
     frames = frames_of(scene, derived)
+    if obstacles_of(scene, frames):
+        grains_of(scene, derived, frames)
+        return
     low = [*(x - r[:, None]), *(np.min(it.frame.corners, axis=0) for it in frames)]
     high = [*(x + r[:, None]), *(np.max(it.frame.corners, axis=0) for it in frames)]
     corner, size = np.array((packing.left, packing.bottom)), np.array((packing.width, packing.height))

@@ -16,6 +16,7 @@ from porescale.builders.initial.contact_laws import law_class
 from porescale.builders.initial.frames import Placed
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
+from porescale.dem.bodies.outline import from_sides, within_outline
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs
 from porescale.dem.motion.control import Control, Moved, schedule_of
@@ -159,24 +160,13 @@ class _Shape:
 
     def distance(self, points: Floats) -> Floats:
         """Distance from points (n, 2) m to the nearest side, m."""
-        nearest = np.full(len(points), np.inf)
-        for a, b in self.sides:
-            way, gone = b - a, points - a
-            share = np.clip(gone @ way / float(way @ way), 0.0, 1.0)
-            nearest = np.minimum(nearest, np.hypot(*(gone - share[:, None] * way).T))
-        return nearest
+        return from_sides(points, self.sides)[0]
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which points (n, 2) m lie within the outline of a solid one, by the parity of sides crossed above."""
-        inside = np.zeros(len(points), bool)
         if self.outline is None:
-            return inside
-        x, y = points.T
-        for (ax, ay), (bx, by) in zip(self.outline, np.roll(self.outline, -1, axis=0), strict=True):
-            spans = (ax > x) != (bx > x)
-            if ax != bx:
-                inside ^= spans & (y < ay + (by - ay) * (x - ax) / (bx - ax))
-        return inside
+            return np.zeros(len(points), bool)
+        return within_outline(points, self.outline)
 
     def depth_in(self, other: _Shape) -> float:
         """How deep (m) it lies in another one's rim; infinite where sides cross or one holds a corner of the other."""

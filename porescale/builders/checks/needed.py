@@ -70,10 +70,13 @@ def check_needed(scene: Scene) -> list[Fault]:
     faults += check_sleep(scene)
     if scene.lubrication and not (scene.fluid and (scene.grains or scene.disc)):
         faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
-    if scene.permeability and scene.fluid and scene.grains is None:
-        faults.append(Fault("permeability", None, "there is no bed", repair="add [grains] or leave it out"))
+    if scene.permeability and scene.fluid and not (scene.grains or scene.disc):
+        faults.append(Fault("permeability", None, "there is no bed", repair="add [grains] or [[disc]]"))
+    if scene.permeability and scene.permeability.wanted is not None and scene.grains is None:
+        problem = "is of grains, whose hydraulic_radius_ratio may differ; held discs have their full size"
+        faults.append(Fault("permeability.wanted", scene.permeability.wanted, problem, repair="leave it out"))
     packing = scene.grains.packing if scene.grains else None
-    if scene.permeability and scene.grains and packing is None and scene.permeability.window is None:
+    if scene.permeability and (scene.grains or scene.disc) and packing is None and scene.permeability.window is None:
         repair = "add [permeability.window] with left, bottom, width, height"
         faults.append(Fault("permeability.window", None, "is needed where there is no packing", repair=repair))
     return faults + check_ring(scene)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from porescale.builders.checks.held_places import path_of
+from porescale.builders.initial.rectangles import stands_in
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import AnyArray
 from porescale.dem.discs import Discs
@@ -171,18 +172,11 @@ def _beyond(size: Pair) -> dict[str, Body]:
 
 
 def _check_packing(packing: Packing, sections: Sequence[Rectangle], faults: list[Fault]) -> None:
-    """A packing is placed clear of rectangles, and settles between them, not onto them."""
+    """A packing settles or is placed around rectangles; compressed, it is clear of them."""
     for k, it in enumerate(sections):
-        wide = min(it.upper[0], packing.left + packing.width) - max(it.lower[0], packing.left)
-        if wide <= EDGE * packing.width or it.lower[1] >= packing.bottom + packing.height * (1 - EDGE):
-            continue
-        if it.upper[1] > packing.bottom + EDGE * packing.height:
-            faults.append(Fault(f"rectangle[{k}]", None, "stands in the packing", repair="move one of them"))
-        elif packing.settle:
-            repair = "move one of them, or set grains.packing.settle = false"
-            faults.append(
-                Fault(f"rectangle[{k}]", None, "is under the packing, which settles without it", repair=repair)
-            )
+        if packing.compress and stands_in(it, packing):
+            repair = "move one of them, or let the packing settle around it"
+            faults.append(Fault(f"rectangle[{k}]", None, "stands in the packing, which is compressed", repair=repair))
 
 
 def _check_discs(scene: Scene, places: AnyArray, radii: AnyArray, names: Sequence[str], faults: list[Fault]) -> None:

@@ -1,6 +1,6 @@
 """All discs of a scene in their order."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,20 +10,24 @@ from porescale.builders.checks.frame_places import require_frames_apart
 from porescale.builders.checks.grain_places import held_alone, require_apart
 from porescale.builders.checks.rectangle_places import require_free_of_rectangles
 from porescale.builders.derive import Derived, grain_count
-from porescale.builders.initial.apply_sections import apply_sections
+from porescale.builders.initial.apply_sections import apply_sections, names_of
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.frames import Placed, placed_frames, with_corners
-from porescale.builders.initial.packing import compressed, radii_of, say_void_ratio
+from porescale.builders.initial.obstacles import obstacles_of, rectangles_around
+from porescale.builders.initial.packing import by_packing, compressed, radii_of, say_void_ratio
 from porescale.builders.initial.placed import by_hand, placed
 from porescale.builders.initial.rectangles import stand_ins, take_over
 from porescale.builders.initial.rock import rock_discs, rock_frames
 from porescale.common.core.errors import InputError
-from porescale.common.neighbors.placement import place, square_lattice
+from porescale.common.core.types import AnyArray
+from porescale.common.neighbors.placement import draw_radii, place, square_lattice
 from porescale.dem.contact.linear import Linear
-from porescale.dem.discs import Discs, make_discs
+from porescale.dem.discs import FIELDS, Discs, make_discs
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
-from porescale.dem.prepare.merge import joined, together
+from porescale.dem.prepare.among import Among, MaterialOf, prepare_among
+from porescale.dem.prepare.merge import joined, released, together
+from porescale.dem.prepare.obstacles import Obstacles
 from porescale.dem.prepare.settle import Pile, prepare
 from porescale.scene.bodies.disc import Disc
 from porescale.scene.domain import Domain
@@ -62,42 +66,65 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed], *, hasty: bo
     packing = scene.grains.packing if scene.grains else None
     parts = [_by_hand(scene)] if by_hand(scene) else []
     parts += [_held(scene.disc, scene.fluid.density if scene.fluid else 1000.0)] if scene.disc else []
+    around = obstacles_of(scene, frames)
+    springs: Mapping[str, AnyArray] = {}
     if scene.rock:
         of_rock = rock_discs(scene, law)
         parts = [of_rock, *parts] if of_rock else parts
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law)
     elif packing and packing.settle and not hasty:
-        grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene.rectangle, packing)])
-        say_void_ratio(packing, grains)
-        if parts:
+        plates = [*plates, *stand_ins(scene.rectangle, packing)]
+        if around:
+            grains, springs = prepared_among(scene, packing, derived, plates, around, frames)
+        else:
+            grains = prepared(scene, packing, box, derived, plates)
+        say_void_ratio(packing, grains, around)
+        if around:
+            grains = _with_parts(grains, around, parts)
+        elif parts:
             grains = joined(grains, together(*parts))
     elif scene.grains and packing and packing.compress and not hasty:
-        grains = compressed(packing, scene.grains.density, scene.domain.periodic, law).grains
-        grains = joined(grains, together(*parts)) if parts else grains
+        grains = compressed(packing, scene.grains.density, scene.domain.periodic, law, around).grains
+        if around:
+            say_void_ratio(packing, grains, around)
+            grains = _with_parts(grains, around, parts)
+        elif parts:
+            grains = joined(grains, together(*parts))
         grains.set_law(law, wall_law)
     else:
         if packing:
             discs_of = _in_rows if hasty else _placed
-            parts = [discs_of(packing, MaterialPlan.of(scene).density(packing.material)), *parts]
+            parts = [discs_of(packing, MaterialPlan.of(scene).density(packing.material), around), *parts]
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
+        if packing and around and not hasty:
+            say_void_ratio(packing, grains, around)
         if held_alone(scene) and any(grains.box.periodic) and _crowds_its_period(grains):
             grains.reach = np.zeros(grains.discs.count)  # no pair is looked for, so that each may touch its own image
         if grains.discs.count and not hasty:  # where bodies of segments are all there is they bring lists of their own
             grains.refresh()  # contacts count from the first row of the series on
     if scene.rectangle:
-        take_over(scene.rectangle, grains)
+        take_over(scene.rectangle, grains, rectangles_around(scene, around) if len(grains.rectangles) else ())
         require_free_of_rectangles(scene.rectangle, grains.discs)
     discs = grains.discs
     grains = with_corners(grains, frames) if frames else grains
     if scene.disc:
         grains.hold(slice(discs.count - len(scene.disc), discs.count))
     recorded = apply_sections(scene, grains, derived.mean_mass, frames)
+    if springs and grains.segments is not None:
+        grains.segments.inherit(springs)
     added = len(scene.disc) + len(by_hand(scene))
-    if added:
+    if added and not around:
         require_apart(discs, scene, discs.count - added)
-    if scene.grains and frames and packing and not scene.rock:
+    if scene.grains and frames and packing and not scene.rock and not around:
         require_frames_apart(scene.grains.overlap, frames, discs, placed(scene)[0])
     return grains, recorded
+
+
+def _with_parts(grains: Grains, around: Obstacles, parts: list[Discs]) -> Grains:
+    """``grains``, a packing made among discs that were held, with these as the scene has them in their places."""
+    count = grains.discs.count - len(around.discs)
+    packed = Discs(*(getattr(grains.discs, name)[:count] for name in FIELDS))
+    return released(grains, together(packed, *parts))
 
 
 def _crowds_its_period(grains: Grains) -> bool:
@@ -116,43 +143,78 @@ def _held(discs: Sequence[Disc], density: float) -> Discs:
 
 def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates: list[Plate]) -> Grains:
     """The packing settled dry, then at rest under the run's contact law and its weight in the fluid."""
-    assert scene.grains
     assert derived.law
-    placed, radii = len(by_hand(scene)) + len(scene.disc), radii_of(packing)
-    pile = Pile(
-        corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
-        diameter=packing.diameter, density=MaterialPlan.of(scene).density(packing.material), spread=packing.size_spread,
-        friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
-        given=() if radii is None else tuple(radii.tolist()), rolling=packing.settling_rolling_friction,
-    )  # fmt: skip
-    lighter = scene.fluid.density if scene.fluid else 0.0
+    pile, lighter = _pile(scene, packing), scene.fluid.density if scene.fluid else 0.0
     return prepare(
         pile, box, derived.law, wall_law=derived.wall_law, plates=plates, weight_density=pile.density - lighter
     )
 
 
-def _placed(packing: Packing, density: float) -> Discs:
+def prepared_among(
+    scene: Scene, packing: Packing, derived: Derived, plates: list[Plate], around: Obstacles, frames: list[Placed]
+) -> Among:
+    """The same among what stands in its way."""
+    assert derived.law
+    pile = replace(_pile(scene, packing), around=around, ceiling=scene.domain.height)
+    lighter, laws = scene.fluid.density if scene.fluid else 0.0, MaterialPlan.of(scene).laws(derived.mean_mass)
+    of_discs = None
+    if laws and len(laws.names) > 1:
+        names = names_of(scene, pile.count + len(around.discs))
+        names += [laws.names[it.frame.material] for it in frames for _ in it.frame.corners]
+        of_discs = MaterialOf(laws, np.array([laws.names.index(name or laws.names[0]) for name in names]))
+    try:
+        return prepare_among(
+            pile, box_of(scene.domain), derived.law, wall_law=derived.wall_law, plates=plates,
+            weight_density=pile.density - lighter, material=of_discs,
+        )  # fmt: skip
+    except InputError as error:
+        raise by_packing(error) from None
+
+
+def _pile(scene: Scene, packing: Packing) -> Pile:
+    """What is dropped."""
+    assert scene.grains
+    placed, radii = len(by_hand(scene)) + len(scene.disc), radii_of(packing)
+    return Pile(
+        corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
+        diameter=packing.diameter, density=MaterialPlan.of(scene).density(packing.material), spread=packing.size_spread,
+        friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
+        given=() if radii is None else tuple(radii.tolist()), rolling=packing.settling_rolling_friction,
+    )  # fmt: skip
+
+
+def _placed(packing: Packing, density: float, around: Obstacles) -> Discs:
     radii = radii_of(packing)
     sizes: dict[str, Any] = (
         {"diameter": packing.diameter, "spread": packing.size_spread, "packing_fraction": packing.packing_fraction}
         if radii is None else {"radii": radii}
     )  # fmt: skip
+    lower, upper = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
     try:
-        placed = place(
-            (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height),
-            seed=packing.seed, **sizes,
-        )  # fmt: skip
+        if around:
+            rng, area = np.random.default_rng(packing.seed), packing.width * packing.height
+            own = (
+                draw_radii(area, sizes["diameter"], sizes["spread"], None, sizes["packing_fraction"], rng)
+                if radii is None
+                else radii
+            )
+            placed = around.place(lower, upper, own, packing.seed, (False, False))
+        else:
+            placed = place(lower, upper, seed=packing.seed, **sizes)
     except InputError as error:
-        raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None
+        raise by_packing(error) from None
     return make_discs(placed.position, placed.radius, density)
 
 
-def _in_rows(packing: Packing, density: float) -> Discs:
-    """Discs of one size on a square lattice over the packing's rectangle, as far apart as its largest."""
+def _in_rows(packing: Packing, density: float, around: Obstacles) -> Discs:
+    """Discs of one size on a square lattice over the packing's rectangle, as far apart as its largest, beside what
+    stands there."""
     radii = radii_of(packing)
     largest = packing.diameter * (1.0 + packing.size_spread) if radii is None else 2.0 * float(radii.max())
     lower = packing.left, packing.bottom
     position = square_lattice(lower, (lower[0] + packing.width, lower[1] + packing.height), 1.01 * largest)
+    if around:
+        position = position[around.depth(position, 0.5 * largest) < -0.5 * largest]
     return make_discs(position, np.full(len(position), 0.5 * largest), density)
 
 

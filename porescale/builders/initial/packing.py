@@ -14,6 +14,7 @@ from porescale.dem.grains import Grains
 from porescale.dem.measures.porosity import porosity, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.prepare.compaction import Compactor, Compressed, kept
+from porescale.dem.prepare.obstacles import NOTHING, Obstacles
 from porescale.scene.packing import Packing
 
 MISSED = 0.02
@@ -42,35 +43,70 @@ def radii_of(packing: Packing) -> Floats | None:
     return None
 
 
-def compressed(packing: Packing, density: float, periodic: tuple[bool, bool], law: ContactLaw) -> Compressed:
+def compressed(
+    packing: Packing, density: float, periodic: tuple[bool, bool], law: ContactLaw, around: Obstacles = NOTHING
+) -> Compressed:
     """The packing pressed to its pressure or fraction; density: of the grains, kg/m³;  periodic: the sides of its
-    rectangle.  Keys of faults are those of the scene."""
+    rectangle;  around: discs that stand in it, which come after the packing's, held.  Keys of faults are those of the
+    scene."""
     assert isinstance(law, Linear)  # check_compressed has made sure
     radius = radii_of(packing)
     assert radius is not None
     box = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
     press = Compactor(*box, law, periodic, packing.settling_friction, density, packing.seed,
-                      packing.settling_rolling_friction)  # fmt: skip
+                      packing.settling_rolling_friction, around)  # fmt: skip
     try:
         return kept(press, radius, packing.pressure)
     except InputError as error:
-        raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None
+        raise by_packing(error) from None
 
 
-def settled_void_ratio(packing: Packing, grains: Grains) -> float:
-    """Void ratio of a bed that settled, between a tenth and seven tenths of its height: without floor and surface."""
-    discs = grains.discs
-    height = float(np.max(discs.position[:, 1] + discs.radius)) - packing.bottom
+def by_packing(error: InputError) -> InputError:
+    """Faults of how grains are placed by the keys of [grains.packing]."""
+    return InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults])
+
+
+def settled_void_ratio(packing: Packing, grains: Grains, around: Obstacles = NOTHING) -> float:
+    """Void ratio of a bed that settled, between a tenth and seven tenths of its height: without floor and surface.
+
+    around : what stands in it, after the packing's discs, which is neither pores nor grains.
+    """
+    count = grains.discs.count - len(around.discs)
+    height = float(np.max((grains.discs.position[:, 1] + grains.discs.radius)[:count])) - packing.bottom
     lower, upper = packing.bottom + 0.1 * height, packing.bottom + 0.7 * height
-    region = Region((packing.left, lower), (packing.left + packing.width, upper))
-    return void_ratio(porosity(region, discs.position, discs.radius, grains.box.period))
+    return void_ratio_in((packing.left, lower), (packing.left + packing.width, upper), grains, around)
 
 
-def say_void_ratio(packing: Packing, grains: Grains) -> None:
-    """A PorescaleWarning where a wanted void ratio set the number of grains, and they settled to another."""
+def void_ratio_in(
+    lower: tuple[float, float], upper: tuple[float, float], grains: Grains, around: Obstacles = NOTHING
+) -> float:
+    """Pores over grains in a rectangle (m); what stands ``around`` is neither."""
+    discs, count = grains.discs, grains.discs.count - len(around.discs)
+    region = Region(lower, upper)
+    found = porosity(region, discs.position[:count], discs.radius[:count], grains.box.period)
+    if around:
+        room = 1.0 - around.area(lower, upper) / region.area
+        found = 1.0 - (1.0 - found) / room
+    return void_ratio(found)
+
+
+def say_void_ratio(packing: Packing, grains: Grains, around: Obstacles = NOTHING) -> None:
+    """A PorescaleWarning where a wanted void ratio set the number of grains, and they came to another; for those that
+    did not settle, only around what stands in their rectangle."""
     if packing.void_ratio is None:
         return
-    found = settled_void_ratio(packing, grains)
+    if not packing.settle:
+        corner = packing.left, packing.bottom
+        found = void_ratio_in(corner, (corner[0] + packing.width, corner[1] + packing.height), grains, around)
+        if abs(found - packing.void_ratio) > MISSED * packing.void_ratio:
+            warnings.warn(
+                f"grains.packing.void_ratio = {packing.void_ratio:g} sets the number of grains by the whole rectangle;"
+                f" around what stands in it their void ratio is {found:.3g} (solid fraction {1 / (1 + found):.3g})",
+                PorescaleWarning,
+                stacklevel=2,
+            )
+        return
+    found = settled_void_ratio(packing, grains, around)
     if abs(found - packing.void_ratio) > MISSED * packing.void_ratio:
         warnings.warn(
             f"grains.packing.void_ratio = {packing.void_ratio:g} sets the number of grains; the bed settled to"

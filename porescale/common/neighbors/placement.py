@@ -6,6 +6,7 @@ the plane).  Discs of equal size crystallise into grains of triangular lattice o
 the packing should be disordered.
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +23,23 @@ INFLATED = 0.81  # fraction with the radii that are slid apart, larger than the 
 ROOMIEST = 1.05  # most that radii are enlarged by
 CLEAR = 1e-4  # least enlargement of radii: the end is then reached in finite time
 MOST_SWEEPS = 20_000
+FEWER_SWEEPS = 5_000  # among what stands, where another start may do
 LENGTH = Range("m")
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Discs that stand where they are while others slide apart: position (k, 2) m from the box's lower corner, radius
+    (k,) m; they may overlap each other.  area (m²): what all that stands takes of the box.
+
+    beside : of other bodies, for points (n, 2) m from the corner: the distance (n,) m of each from a body, below zero
+    inside, and the unit vector (n, 2) away from it, body by body.
+    """
+
+    position: Floats
+    radius: Floats
+    area: float
+    beside: Callable[[Floats], Iterable[tuple[Floats, Floats]]] = lambda points: ()
 
 
 @dataclass(frozen=True)
@@ -47,6 +64,7 @@ def place(
     periodic: tuple[bool, bool] = (False, False),
     seed: int = 0,
     start: Floats | None = None,
+    standing: Standing | None = None,
 ) -> Placement:
     """Discs wholly inside the box (or across a periodic side), none touching another; the same for the same seed.
 
@@ -54,7 +72,8 @@ def place(
     over box area, at most 0.80): the third follows.  Diameters are uniform in diameter (1 ± spread), with
     0 <= spread < 1.  A fraction that fixes the count is matched as nearly as whole discs allow; ``Placement.fraction``
     gives what was reached.  Equal discs (spread 0) crystallise above a fraction of about 0.7.  start (n, 2) m: where
-    the discs of ``radii`` slide apart from, over the lower corner, in place of random places.
+    the discs of ``radii`` slide apart from, over the lower corner, in place of random places.  standing: discs between
+    which they are placed; fractions are then of the area that these leave.
 
     Raises InputError for values out of range, or with the overlap left when the discs do not fit.
     """
@@ -70,14 +89,15 @@ def place(
     radius = np.array(radii, dtype=np.float64)
     if radius.size and not (np.all(np.isfinite(radius)) and radius.min() > 0.0):
         raise InputError(Fault("radii", float(radius.min()), "every radius must be a length", "m", "> 0"))
-    fraction = float(np.pi * np.sum(radius**2) / (size[0] * size[1]))
+    room = size[0] * size[1] - (standing.area if standing else 0.0)
+    fraction = float(np.pi * np.sum(radius**2) / room) if room > 0.0 else np.inf
     _check_fraction(round(fraction, 4), fraction)
     largest = 2.0 * float(radius.max(initial=0.0))
     if largest > min(size):
         raise InputError(Fault("diameter", largest, "a disc is larger than the box", "m", f"<= {min(size):.6g}"))
     if start is None:
         start = rng.uniform((0.0, 0.0), size, (len(radius), 2))
-    position, sweeps = slide_apart(start, radius, size, periodic, fraction)
+    position, sweeps = slide_apart(start, radius, size, periodic, fraction, standing=standing)
     return Placement(position + np.array(lower), radius, fraction, sweeps)
 
 
@@ -147,10 +167,12 @@ def slide_apart(
     periodic: tuple[bool, bool],
     fraction: float,
     roomiest: float = ROOMIEST,
+    standing: Standing | None = None,
 ) -> tuple[Floats, int]:
     """Positions (n, 2) m in a box from the origin to ``size`` without overlap, near ``start``; sweeps it took.
 
-    roomiest : factor of the radii that are slid apart, or less where the box is full.
+    roomiest : factor of the radii that are slid apart, or less where the box is full.  standing : discs that do not
+    move.
     """
     n = len(radius)
     if n == 0:
@@ -159,19 +181,26 @@ def slide_apart(
     x = start / unit
     real = radius / unit
     grown = real * max(1.0 + CLEAR, min(roomiest, float(np.sqrt(INFLATED / fraction))))
+    if standing:
+        x = np.concatenate((x, standing.position / unit))
+        real, grown = (np.concatenate((each, standing.radius / unit)) for each in (real, grown))
     box = (size[0] / unit, size[1] / unit)
-    pairs = PairList(n, 0.3, (0.0, 0.0), box, periodic)
-    velocity, force = np.zeros((n, 2)), np.zeros((n, 2))
+    pairs = PairList(len(x), 0.3, (0.0, 0.0), box, periodic)
+    velocity, force = np.zeros(x.shape), np.zeros(x.shape)
     step, mixing, uphill = 0.1, 0.1, 0
     worst = np.inf
-    for sweep in range(MOST_SWEEPS):
+    most_sweeps = FEWER_SWEEPS if standing else MOST_SWEEPS
+    for sweep in range(most_sweeps):
         pairs.update(x, grown)
-        worst, power = repel(x, grown, real, pairs.start, pairs.partner, *box, *pairs.period, velocity, force)
+        worst, power = repel(x, grown, real, pairs.start, pairs.partner, *box, *pairs.period, velocity, force, n)
+        if standing:
+            most, more = _repel_from(standing, x[:n], grown[:n], real[:n], unit, velocity[:n], force[:n])
+            worst, power = max(worst, most), power + more
         if worst <= 0.0:
             for axis in (0, 1):
                 if periodic[axis]:
                     x[:, axis] %= box[axis]
-            return x * unit, sweep
+            return x[:n] * unit, sweep
         # FIRE with the constants of Bitzek et al. 2006; the longest step stays below 2/sqrt(6), the limit of a
         # triangular lattice of unit springs and masses.
         if power > 0.0:
@@ -182,21 +211,36 @@ def slide_apart(
             velocity[:] = 0.0
             step, mixing, uphill = 0.5 * step, 0.1, 0
         glide(x, velocity, force, step, mixing)
-    problem = f"discs still overlap by {worst:.2g} mean diameters after {MOST_SWEEPS} sweeps"
+    problem = f"discs still overlap by {worst:.2g} mean diameters after {most_sweeps} sweeps"
     repair = "lower the fraction, widen the spread of sizes or take another seed"
     raise InputError(Fault("packing_fraction", round(fraction, 4), problem, repair=repair))
 
 
+def _repel_from(
+    standing: Standing, x: Floats, grown: Floats, real: Floats, unit: float, velocity: Floats, force: Floats
+) -> tuple[float, float]:
+    """Unit springs between discs and the bodies that stand: adds to ``force`` (n, 2).  As ``repel``, lengths in units
+    of ``unit`` (m)."""
+    worst, power = -np.inf, 0.0
+    for distance, normal in standing.beside(x * unit):
+        pushed = np.maximum(grown - distance / unit, 0.0)[:, None] * normal
+        force += pushed
+        power += float(np.sum(pushed * velocity))
+        worst = max(worst, float((real - distance / unit).max()))
+    return worst, power
+
+
 @kernel
-def repel(x, grown, real, start, partner, width, height, period_x, period_y, velocity, force):
+def repel(x, grown, real, start, partner, width, height, period_x, period_y, velocity, force, loose):
     """Unit springs between discs of radius ``grown`` (n,) and at walls without period: overwrites ``force`` (n, 2).
 
+    The first ``loose`` discs move; the others stand, without force, and what they overlap of each other is not counted.
     Returns the largest overlap of discs of radius ``real`` with each other or a wall (negative: clear), and
     the power force · ``velocity``.  Centres that coincide are parted along x.
     """
     worst = -np.inf
     force[:] = 0.0
-    for i in range(x.shape[0]):
+    for i in range(loose):
         for k in range(start[i], start[i + 1]):
             j = partner[k]
             dx = minimum_image(x[i, 0] - x[j, 0], period_x)
@@ -220,8 +264,9 @@ def repel(x, grown, real, start, partner, width, height, period_x, period_y, vel
                 high = side - x[i, axis]
                 worst = max(worst, real[i] - low, real[i] - high)
                 force[i, axis] += max(0.0, grown[i] - low) - max(0.0, grown[i] - high)
+    force[loose:] = 0.0
     power = 0.0
-    for i in range(x.shape[0]):
+    for i in range(loose):
         power += force[i, 0] * velocity[i, 0] + force[i, 1] * velocity[i, 1]
     return worst, power
 

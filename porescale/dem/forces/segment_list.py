@@ -7,6 +7,7 @@ type 2.  Any point of a segment moves no further than the corners at its ends do
 corners and segments: a listing follows each one of the discs' pair list.
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -145,6 +146,16 @@ class SegmentList:
             RULES.index(self.rule), self.ends, self._start, self._other, self.corner, self.corner_memory,
             self._beside(), self.near, self.near_memory,
         )  # fmt: skip
+
+    def inherit(self, state: Mapping[str, Any]) -> None:
+        """Take the springs of contacts that another list of the same discs and segments had, by its ``state()``."""
+        for name in ("corner", "near"):
+            memory = getattr(self, f"{name}_memory")
+            rows = np.asarray(state[name], np.int64)
+            kept = _carried(rows, np.asarray(state[f"{name}_memory"])[:, : memory.shape[1]], getattr(self, name),
+                            memory.shape[1])  # fmt: skip
+            setattr(self, f"{name}_memory", kept)
+        self.arrays = self._pack()
 
     def state(self) -> dict[str, Any]:
         """Copies of the listing and its springs."""

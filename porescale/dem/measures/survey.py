@@ -191,10 +191,13 @@ def coordination(grains: State) -> float:
     return float(grains.touching.sum()) / bodies if bodies else 0.0
 
 
-def unbalanced(grains: State) -> float:
-    """Mean net force on a disc over mean weight-like external force of the last step; 0 in equilibrium."""
-    net = np.hypot(grains.discs.force[:, 0], grains.discs.force[:, 1]).mean()
-    load = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).mean()
+def unbalanced(grains: State, free: int | None = None) -> float:
+    """Mean net force on a disc over mean weight-like external force of the last step; 0 in equilibrium.
+
+    free : of so many first discs, where the others are held (None: of all).
+    """
+    net = np.hypot(grains.discs.force[:free, 0], grains.discs.force[:free, 1]).mean()
+    load = np.hypot(grains.external_force[:free, 0], grains.external_force[:free, 1]).mean()
     return float(net / load) if load > 0.0 else 0.0
 
 

@@ -32,10 +32,12 @@ from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, principal
 from porescale.dem.measures.survey import max_overlap
+from porescale.dem.prepare.obstacles import NOTHING, Obstacles
 from porescale.dem.prepare.settle import UNREADABLE, cached_at, pack, unpack
 
 START = 0.7  # packing fraction at which discs are placed: short of where friction can hold them
 DRAG = 0.02  # background damping per step: lets discs that are pushed travel, ends waves between two looks
+DENSEST = 0.84  # packing fraction of random close packing
 GROWTH = 5e-4  # of the radii at a time: less than the overlaps at which a packing is loaded
 PAUSE = 40  # steps after each: some periods of a contact
 REST = 400  # steps between checks once the pressure is reached
@@ -62,7 +64,7 @@ class Compressed(NamedTuple):
 class Compactor:
     """How discs are compressed: in the rectangle ``lower`` to ``upper`` (m), periodic or between walls, under ``law``,
     with ``friction`` between discs while they grow (walls without), density kg/m³, seed of the random start;  rolling :
-    friction of rolling while they grow (0: that of the law)."""
+    friction of rolling while they grow (0: that of the law);  around : discs that stand, after those that grow."""
 
     lower: tuple[float, float]
     upper: tuple[float, float]
@@ -72,6 +74,7 @@ class Compactor:
     density: float = 2500.0
     seed: int = 0
     rolling: float = 0.0
+    around: Obstacles = NOTHING
 
     def to_pressure(self, radius: Floats, pressure: float) -> Compressed:
         """Discs with sizes in the ratios of ``radius`` (n,) m, grown or shrunk until the mean stress is ``pressure``
@@ -95,6 +98,8 @@ class Compactor:
 
         Raises InputError when that is so dense that they overlap by more than 2 % of a diameter.
         """
+        if self.around:
+            self._require_room(radius)
         grains, scale = self._start(radius)
         fits, deepest = scale, 0.0
         while scale < 1.0:
@@ -105,7 +110,7 @@ class Compactor:
             if deepest <= DEEPEST:
                 fits = scale
         if deepest > DEEPEST:
-            made = float(grains.discs.area.sum()) / self._region.area
+            made = float(grains.discs.area[: self._free(grains)].sum()) / self._region.area
             problem = f"is what these discs make, pressed into each other by {deepest:.2g} of a diameter"
             repair = "lower packing_fraction, or the friction while preparing"
             most = f"< {math.floor(100.0 * made * fits**2) / 100.0:g}"
@@ -120,7 +125,23 @@ class Compactor:
         across, up = ("periodic" if it else "solid" for it in self.periodic)
         box = Box(self.lower, self.upper, across, across, up, up)
         law = self._preparing
-        return Grains(make_discs(position, radius, self.density), law, box, wall_law=law.with_friction(0.0))
+        discs, walls = make_discs(position, radius, self.density), law.with_friction(0.0)
+        if self.around:
+            return self.around.beside(discs, law, box, self.density, wall_law=walls)
+        return Grains(discs, law, box, wall_law=walls)
+
+    def _require_room(self, radius: Floats) -> None:
+        """InputError where discs of ``radius`` (n,) m are more than can be pressed into what the obstacles leave."""
+        left = 1.0 - self.around.area(self.lower, self.upper) / self._region.area
+        share = float(np.pi * np.sum(radius**2)) / self._region.area
+        if share > DENSEST * left:
+            problem = "of the rectangle does not fit beside what stands in it"
+            most = f"<= {math.floor(1e3 * DENSEST * left) / 1e3:g}"
+            raise InputError(Fault("packing_fraction", round(share, 4), problem, "", most, "lower packing_fraction"))
+
+    def _free(self, grains: Grains) -> int:
+        """Number of the discs that grow, the first ones."""
+        return grains.discs.count - len(self.around.discs)
 
     @property
     def _preparing(self) -> Linear:
@@ -134,21 +155,25 @@ class Compactor:
 
     def _start(self, radius: Floats) -> tuple[Grains, float]:
         """Small discs at random places, and their radii over those wanted."""
-        covered = float(np.pi * np.sum(radius**2)) / self._region.area
+        room = self._region.area - (self.around.area(self.lower, self.upper) if self.around else 0.0)
+        covered = float(np.pi * np.sum(radius**2)) / room if room > 0.0 else math.inf
         scale = min(1.0, math.sqrt(START / covered))
-        placed = place(self.lower, self.upper, radii=scale * radius, periodic=self.periodic, seed=self.seed)
+        if self.around:
+            placed = self.around.place(self.lower, self.upper, scale * radius, self.seed, self.periodic)
+        else:
+            placed = place(self.lower, self.upper, radii=scale * radius, periodic=self.periodic, seed=self.seed)
         grains = self.grains(placed.position, placed.radius)
         # The same mass for all while they are prepared: small discs would else set the step, and large ones crawl.
-        d = grains.discs
-        d.mass[:] = d.mass.mean()
-        d.inertia[:] = 0.5 * d.mass * d.radius**2
+        d, free = grains.discs, self._free(grains)
+        d.mass[:free] = d.mass[:free].mean()
+        d.inertia[:free] = 0.5 * d.mass[:free] * d.radius[:free] ** 2
         return grains, scale
 
     def _grow(self, grains: Grains, factor: float, steps: int) -> None:
         """Radii times ``factor``, and steps for what that does to settle."""
-        d = grains.discs
-        d.radius *= factor
-        d.inertia *= factor**2
+        d, free = grains.discs, self._free(grains)
+        d.radius[:free] *= factor
+        d.inertia[:free] *= factor**2
         grains.refresh()
         dt = grains.stable_step(steps_per_contact=0.0)
         grains.step(dt, None, None, steps, DRAG / dt)
@@ -163,7 +188,7 @@ class Compactor:
                 self._grow(grains, 1.0 + GROWTH, PAUSE)
                 continue
             looks += 1
-            if abs(now / pressure - 1.0) < NEAR and out_of_balance(grains) < BALANCE:
+            if abs(now / pressure - 1.0) < NEAR and out_of_balance(grains, self._free(grains)) < BALANCE:
                 self._stop(grains)
                 return
             # The modulus of a packing is at most about its contact stiffness: this does not go too far.
@@ -171,17 +196,17 @@ class Compactor:
             self._grow(grains, 1.0 + step, REST)
         raise PorescaleError(
             f"the packing did not come to rest under {pressure:.3g} Pa: pressure {mean_stress(grains):.3g} Pa, "
-            f"net force {out_of_balance(grains):.2g} of the mean contact force"
+            f"net force {out_of_balance(grains, self._free(grains)):.2g} of the mean contact force"
         )
 
     def _rest(self, grains: Grains) -> None:
         """Steps until net forces are small, or nothing touches."""
         for _ in range(PATIENCE):
             self._grow(grains, 1.0, REST)
-            if out_of_balance(grains) < BALANCE:
+            if out_of_balance(grains, self._free(grains)) < BALANCE:
                 self._stop(grains)
                 return
-        left = out_of_balance(grains)
+        left = out_of_balance(grains, self._free(grains))
         raise PorescaleError(f"the packing did not come to rest: net force {left:.2g} of the mean contact force")
 
     def _stop(self, grains: Grains) -> None:
@@ -191,10 +216,10 @@ class Compactor:
         grains.reset_clock()
 
     def _made(self, grains: Grains, radius: Floats) -> Compressed:
-        d = grains.discs
-        d.mass[:] = self.density * d.area
-        d.inertia[:] = 0.5 * d.mass * d.radius**2
-        fraction = float(d.area.sum()) / self._region.area
+        d, free = grains.discs, self._free(grains)
+        d.mass[:free] = self.density * d.area[:free]
+        d.inertia[:free] = 0.5 * d.mass[:free] * d.radius[:free] ** 2
+        fraction = float(d.area[:free].sum()) / self._region.area
         scale = float(d.radius[0] / radius[0])
         return Compressed(grains, scale, fraction, mean_stress(grains), 0.5 * max_overlap(grains).share)
 
@@ -208,7 +233,7 @@ def kept(press: Compactor, radius: Floats, pressure: float | None, folder: Path 
     path = cached_at([dataclasses.asdict(press), np.asarray(radius).tolist(), pressure], folder)
     with contextlib.suppress(*UNREADABLE):
         state = unpack(path)
-        grains = press.grains(np.zeros((len(radius), 2)), radius)
+        grains = press.grains(np.array(state["discs"]["position"])[: len(radius)], radius)
         grains.set_law(press.law, press.law)
         grains.restore(state)
         numbers = state["made"]
@@ -225,12 +250,13 @@ def mean_stress(grains: Grains) -> float:
     return principal(contact_stress(region, contacts(grains), grains.box.period)).mean
 
 
-def out_of_balance(grains: Grains) -> float:
-    """Mean net contact force on a disc over the mean force of a contact; 0 where nothing touches."""
+def out_of_balance(grains: Grains, free: int | None = None) -> float:
+    """Mean net contact force on a disc, of so many ``free`` first ones (None: all), over the mean force of a contact; 0
+    where nothing touches."""
     found = contacts(grains)
     if not found.count or not (scale := float(np.abs(found.normal_force).mean())) > 0.0:
         return 0.0
-    return float(np.hypot(*found.resultants(grains.discs.count)[0].T).mean()) / scale
+    return float(np.hypot(*found.resultants(grains.discs.count)[0][:free].T).mean()) / scale
 
 
 # ---------------------------------------------------------------- files

@@ -20,8 +20,8 @@ class Window(Section):
 class Permeability(Section):
     """The permeability of the bed as it stands in the first and the last snapshot: permeability.csv.
 
-    The grains in the window are held, a body force drives fluid through them, slowly enough for Stokes flow; operators
-    and relaxation time are the run's, so that it is what this bed lets through in this run.
+    The grains and held discs in the window stand still, a body force drives fluid through them, slowly enough for
+    Stokes flow; operators and relaxation time are the run's, so that it is what this bed lets through in this run.
     """
 
     window: Window | None = None

@@ -5,7 +5,7 @@ import pytest
 
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import place, square_lattice, triangular_lattice
-from porescale.common.neighbors.placement import glide, repel
+from porescale.common.neighbors.placement import Standing, glide, repel
 from tests.reference.dem.pairs import nearest_image
 
 
@@ -132,7 +132,7 @@ def test_springs_obey_newtons_third_law_in_plain_python_too():
     forces = []
     for run in (repel, repel.py_func):
         force = np.empty((3, 2))
-        worst, power = run(x, grown, grown, start, partner, 9.0, 9.0, 9.0, 9.0, np.ones((3, 2)), force)
+        worst, power = run(x, grown, grown, start, partner, 9.0, 9.0, 9.0, 9.0, np.ones((3, 2)), force, 3)
         forces.append(force)
         assert worst == pytest.approx(0.8)
         assert abs(force.sum()) < 1e-15  # three additions of numbers below 1
@@ -142,3 +142,37 @@ def test_springs_obey_newtons_third_law_in_plain_python_too():
     glide.py_func(x, velocity, forces[0], 0.1, 0.1)
     # from rest the turn leaves the velocity along the force
     np.testing.assert_allclose(velocity, 0.1 * forces[0], rtol=1e-12)
+
+
+def test_discs_that_stand_are_not_moved_and_what_they_overlap_of_each_other_does_not_count():
+    x = np.array([[0.5, 0.5], [1.0, 0.6], [1.0, 0.6]])
+    grown = np.full(3, 0.4)
+    start, partner = np.array([0, 2, 3, 3]), np.array([1, 2, 2], np.int32)
+    for run in (repel, repel.py_func):
+        force = np.empty((3, 2))
+        worst, _ = run(x, grown, grown, start, partner, 9.0, 9.0, 9.0, 9.0, np.ones((3, 2)), force, 1)
+        assert worst == pytest.approx(0.8 - np.hypot(0.5, 0.1))  # of the first with either, not 0.8
+        assert not force[1:].any()
+        np.testing.assert_allclose(force[0], 2 * worst * np.array([-0.5, -0.1]) / np.hypot(0.5, 0.1), rtol=1e-12)
+
+
+def test_discs_are_placed_among_what_stands():
+    size, radii = (0.03, 0.02), np.full(300, 4e-4)
+    at, radius = np.array([[0.01, 0.008], [0.011, 0.008], [-0.001, 0.01]]), np.array([0.003, 0.003, 0.003])
+
+    def beside(points):
+        """A wall along x = 25 mm, solid to the right."""
+        return [(0.025 - points[:, 0], np.tile([-1.0, 0.0], (len(points), 1)))]
+
+    start = np.random.default_rng(3).uniform((0.004, 0.0121), (0.024, 0.0199), (300, 2))
+
+    def deepest(standing):
+        """How deep a disc lies in what stands."""
+        x = place((0.0, 0.0), size, radii=radii, start=start, standing=standing).position
+        apart = np.hypot(*np.moveaxis(x[:, None] - at, -1, 0)) - radii[:, None] - radius
+        return max(float(-apart.min()), float((x[:, 0] + radii).max()) - 0.025)
+
+    assert deepest(Standing(at, radius, 2e-4, beside)) <= 0.0
+    assert deepest(None) > 1e-4  # the twin: they spread over it
+    with pytest.raises(InputError, match="denser than random placement"):
+        place((0.0, 0.0), size, radii=radii, start=start, standing=Standing(at, radius, 0.75 * 6e-4, beside))
