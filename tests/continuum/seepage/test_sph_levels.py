@@ -1,21 +1,12 @@
-"""Water kept at a level: measured by weight, accounted for to the last particle, resumed bit for bit."""
+"""Water kept at a level: measured by weight, put in and taken out, accounted for to the last particle."""
 
 import numpy as np
 import pytest
 
-from continuum_sph.builders.parts.instruments import MeasuredWater, discharge
-from continuum_sph.builders.reports.seepage_report import seepage_report
-from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.instruments import LevelSection
-from continuum_sph.scene.reservoir import ReservoirSection
-from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply
 from continuum_sph.seepage.reservoir import CLOSER, HEAP, berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
-from porescale.common.compiled.jit import set_threads
-from porescale.common.core.errors import InputError
 from porescale.common.neighbors import square_lattice
-from porescale.common.schema.sections import validate
 
 SPACING, ROUND = 0.1, 2.3e-16
 
@@ -134,39 +125,6 @@ def test_a_strip_of_which_half_stands_over_ground_has_the_ramp_of_its_mean_poros
         assert abs(np.mean(off)) < (1.0 / 50.0) ** 2 / porosity
         # the twin: the ramp of the ground alone
         assert np.mean([off_on_its_way(beneath, porosity).mean() for beneath in (porosity, 1.0)]) > 0.03
-
-
-def test_a_reservoir_knows_what_lies_below_its_bottom():
-    body = {"outline": [[0.3, 0], [0.7, 0], [0.7, 0.2], [0.3, 0.2]]}
-    soil = scene(soil={"porosity": 0.3, "permeability": 0.05, "body": [body]}, reservoir=[]).soil
-
-    def porosity(left, right, bottom):
-        return ReservoirSection(left=left, right=right, bottom=bottom, level=0.28).porosity(soil, 0.02)
-
-    assert porosity(0.4, 0.6, 0.2) == pytest.approx(0.3)
-    assert porosity(0.4, 0.6, 0.208) == pytest.approx(0.3)  # the row below it lies in the ground
-    assert porosity(0.4, 0.6, 0.212) == 1.0  # and here over it
-    assert porosity(0.1, 0.2, 0.2) == 1.0
-    assert porosity(0.6, 0.8, 0.2) == pytest.approx(0.65)  # half of it over ground
-
-
-def off_in_the_open():
-    """Rows by which a reservoir whose bottom lies in open water, four rows over ground, finds it too deep at first."""
-    model = Simulation(
-        scene(
-            water={"column": [{"width": 0.8, "height": 0.24}], "sound_speed": 30.0},
-            soil={"held": True, "body": [{"outline": [[0, 0], [0.8, 0], [0.8, 0.08], [0, 0.08]]}]},
-            reservoir=[{"name": "pool", "left": 0.0, "right": 0.2, "bottom": 0.16, "level": 0.24}],
-        )
-    )
-    return (model.flow.supply.reservoirs[0].stood - 0.24) / 0.02
-
-
-def test_a_reservoir_that_begins_in_open_water_has_its_level(monkeypatch):
-    # what remains: 0.24 m of water are 3e-3 denser than it is at rest under its own weight in the mean, of four rows
-    assert abs(off_in_the_open()) < 0.03
-    monkeypatch.setattr(ReservoirSection, "porosity", lambda *_: OLD)
-    assert off_in_the_open() > 0.15  # the twin that must fail
 
 
 def test_what_has_passed_on_has_no_steps_of_whole_particles():
@@ -303,106 +261,3 @@ def test_berths_are_a_pitch_apart_and_over_the_floor():
     apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) + np.eye(50)
     assert apart.min() == pytest.approx(0.3)
     assert places[:, 1].min() == pytest.approx(1.3)
-
-
-def scene(**changes):
-    given = {
-        "tank": {"width": 0.8, "height": 0.3, "lid": False},
-        "water": {"column": [{"width": 0.3, "height": 0.1}], "sound_speed": 30.0},
-        "soil": {"stiffness": 2e5, "elastic": True, "permeability": 0.05,
-                 "body": [{"outline": [[0.3, 0], [0.5, 0], [0.5, 0.25], [0.3, 0.25]]}]},
-        "reservoir": [{"name": "upstream", "left": 0.0, "right": 0.2, "rise": [[0, 0.1], [0.02, 0.2]]},
-                      {"name": "downstream", "left": 0.6, "right": 0.8, "level": 0.0}],
-        "numerics": {"spacing": 0.02, "artificial_viscosity": 0.1, "shifting": 1.0, "tension": "cut"},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
-    }  # fmt: skip
-    return validate(Scene, given | changes)
-
-
-def test_the_discharge_through_a_section_is_what_flows_in_pores():
-    x = square_lattice((0.0, 0.0), (1.0, 0.5), SPACING)
-    v = np.tile([0.3, 0.1], (len(x), 1))
-    cloud = MeasuredWater(x, np.full(len(x), SPACING**2), np.zeros(len(x)), v, 1.3 * SPACING, SPACING, 1.0)
-    through = discharge(LevelSection(x=0.5), cloud, np.full(len(x), 0.4))
-    assert through == pytest.approx(0.4 * 0.3 * 0.5, rel=1e-12)  # n v H; a sum of 20 equal parts
-
-
-def test_reservoirs_that_cannot_be_are_refused():
-    good = {"left": 0.0, "right": 0.2, "level": 0.1}
-    for wrong, named in (
-        ({"level": None}, "level or a rise"),
-        ({"right": 0.9}, "outside"),
-        ({"right": 0.01}, "fewer than 2"),
-        ({"level": 0.4}, "tank"),
-        ({"level": None, "rise": [[0, 0.1], [0, 0.2]]}, "rise"),
-    ):
-        with pytest.raises(InputError, match=named):
-            scene(reservoir=[good | wrong])
-    with pytest.raises(InputError, match="soil"):
-        scene(reservoir=[good], soil=None)
-
-
-def test_kernels_too_short_for_pores_and_shifting_are_warned_of():
-    def said(numerics):
-        warnings = seepage_report(scene(numerics={"spacing": 0.02} | numerics)).warnings
-        return [any(word in text for text in warnings) for word in ("kernels reach", "fastest water")]
-
-    assert said({"shifting": 1.0}) == [True, True]
-    assert said({"smoothing_ratio": 2.0}) == [False, False]
-
-
-def test_water_that_is_to_rest_over_ground_for_long_is_warned_of():
-    def said(end, **numerics):
-        given = scene(numerics={"spacing": 0.02} | numerics, time={"end": end})
-        return any("lattice gives way" in text for text in seepage_report(given).warnings)
-
-    assert said(1000.0, smoothing_ratio=1.3)
-    assert not said(1000.0)
-    assert not said(1.0, smoothing_ratio=1.3)
-
-
-@pytest.mark.slow
-def test_a_dam_between_levels_is_resumed_bit_for_bit_and_accounts_for_its_water():
-    whole, part, resumed = (Simulation(scene()) for _ in range(3))
-    before = whole.series()["mass (kg/m)"]
-    whole.advance(300)
-    part.advance(130)
-    resumed.restore(part.state())
-    resumed.advance(170)
-    assert np.array_equal(whole.flow.water.layer.x, resumed.flow.water.layer.x)
-    row = whole.series()
-    assert row == resumed.series()
-    assert row["upstream let in (kg/m)"] > 0.09 * 0.2 * 1000.0
-    balance = sum(row[f"{name} let in (kg/m)"] - row[f"{name} let out (kg/m)"] for name in ("upstream", "downstream"))
-    # sums of up to 600 particles' masses in two orders
-    assert abs(row["mass (kg/m)"] - before - balance) < ROUND * 600 * row["mass (kg/m)"]
-    cloud = whole.snapshot().clouds["water"]
-    layer = whole.flow.water.layer
-    assert len(cloud.position) == (layer.mass[: layer.fluid] > 0.0).sum()
-
-
-@pytest.mark.slow
-def test_water_of_a_reservoir_beside_a_dam_full_of_air_is_accounted_for_and_air_keeps_its_mass():
-    model = Simulation(scene(air={"density": 20.0}))
-    before = model.series()
-    model.advance(400)
-    model.check()
-    row = model.series()
-    assert row["air: mass (kg/m)"] == before["air: mass (kg/m)"]
-    balance = sum(row[f"{name} let in (kg/m)"] - row[f"{name} let out (kg/m)"] for name in ("upstream", "downstream"))
-    gained = row["water: mass (kg/m)"] - before["water: mass (kg/m)"]
-    assert abs(gained - balance + before["upstream let in (kg/m)"]) < ROUND * 600 * row["water: mass (kg/m)"]
-    assert balance > 10.0  # half of 0.1 m of water in a strip of 0.2 m, and the basin beside it
-
-
-@pytest.mark.slow
-def test_one_thread_and_many_keep_the_same_levels_in_the_same_bits():
-    ends = []
-    for threads in (1, 2):
-        set_threads(threads)
-        model = Simulation(scene())
-        model.advance(60)
-        ends.append((model.flow.water.layer.x.copy(), model.series()))
-    assert np.array_equal(ends[0][0], ends[1][0])
-    assert ends[0][1] == ends[1][1]
