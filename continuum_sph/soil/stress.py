@@ -22,24 +22,29 @@ XX, YY, XY, ZZ, GROWN, EXCESS, CROWD = range(7)
 """Columns of a stress, Pa, compression positive; of what diffuses, that of the volume, m²/s; the mean p of the
 surroundings less p, Pa; and how crowded a place is: Σ -(1/r) W' spacing² of its partners over the integral."""
 
+DAMPED_MOST = 0.9
+"""Largest α c Δt/h of damping times `CROWD` with which no wave of a lattice swings ever wider, 2/2.19 (see
+`parameters.DAMPED`): what damping takes of a zig-zag goes with the same sum, so beyond it is weaker by as much."""
 CROWDED = 1.6
 """A place's `CROWD` up to which diffusion is bounded by the step alone, see `parameters.SoilLaw.most`."""
 
 
 class Straining(NamedTuple):
     """step, s;  spreading: for how long diffusion lasts, s;  spin: 1, or -1 for the sign of eq. 38 in Maeda & Sakai
-    2004;  most: shear strain of a step that `accelerate` follows."""
+    2004;  most: shear strain of a step that `accelerate` follows;  damping: α/h, 1/m."""
 
     step: Any
     spreading: Any
     spin: Any
     most: Any
+    damping: Any
 
 
 @parallel_kernel
 def deform(density, stress, material, table, matrix, spread, separation_strain, plastic_shear, record, straining):
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``separation_strain``, ``plastic_shear``
-    (soil,) and in ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
+    (soil,) and in ``record`` (n, 16) c/ρ, less where damping would take more than a step follows, shear strain rate
+    and σ·K.
 
     material, table, matrix: see `state.Soil`;  spread (soil, 7) Pa/s, m²/s, Pa and 1: diffusion of stress and
     volume, mean p of the surroundings less p, and crowd, of `accelerate`;  straining: see `Straining`.  Returns the
@@ -81,7 +86,8 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
         kxx = matrix[i, 0]
         kxy = matrix[i, 1]
         kyy = matrix[i, 2]
-        record[i, SOUND_OVER_DENSITY] = np.sqrt(speed2) / density[i]
+        taken = straining.damping * np.sqrt(speed2) * step * max(1.0, spread[i, CROWD])
+        record[i, SOUND_OVER_DENSITY] = np.sqrt(speed2) / density[i] * (DAMPED_MOST / max(DAMPED_MOST, taken))
         shearing = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
         bound = most / max(1.0, spread[i, CROWD] / CROWDED)
         record[i, SHEAR_RATE] = shearing if shearing * step <= bound else bound / step

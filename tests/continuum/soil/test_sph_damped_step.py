@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from continuum_sph.soil import parameters
+from continuum_sph.soil import flow, parameters
+from continuum_sph.soil.stress import Straining
 from continuum_sph.validation.soil.slopes import NEAR, layer
 
 
@@ -49,8 +50,15 @@ def test_strong_damping_lets_nothing_swing():
     assert swiftest(4.5) < 1.5 * FREE
 
 
-def test_a_step_of_sound_alone_lets_it_swing_ever_wider(monkeypatch):  # the twin that must fail
+def test_damping_beyond_what_a_step_follows_is_weaker(monkeypatch):
+    # a step of sound alone, α c Δt/h = 1.1: as where particles crowd in one that damping allows
     monkeypatch.setattr(parameters, "DAMPED", np.inf)
+    assert swiftest(4.5) < 1.5 * FREE
+
+
+def test_a_step_of_sound_alone_lets_it_swing_ever_wider(monkeypatch):  # the twin of both that must fail
+    monkeypatch.setattr(parameters, "DAMPED", np.inf)
+    monkeypatch.setattr(flow, "Straining", lambda *given: Straining(*given[:-1], 0.0))
     assert swiftest(4.5) > 1.5 * FREE
 
 
