@@ -82,7 +82,7 @@ def test_without_a_gpu_a_run_is_refused_in_one_line(monkeypatch):
 
 
 def test_without_a_gpu_a_scene_is_refused_before_its_grains_are_packed(monkeypatch):
-    monkeypatch.setattr("porescale.builders.build.grains_of", lambda *_: pytest.fail("grains were packed"))
+    monkeypatch.setattr("porescale.builders.build.grains_of", lambda *_, **__: pytest.fail("grains were packed"))
     with pytest.raises(pytest.fail.Exception):
         build(Scene(**GRAINS_ON_GPU))
     monkeypatch.setattr(cuda, "simulated", lambda: False)
