@@ -10,6 +10,7 @@ from porescale.builders.checks.limits import DENSITY_REFUSE
 from porescale.builders.checks.own_laws import impulse, largest_force
 from porescale.builders.initial.placed import by_hand
 from porescale.common.compiled.own import OwnLaw
+from porescale.common.core.constants import EDGE
 from porescale.common.core.errors import Fault
 from porescale.lbm.scales import Scales
 from porescale.scene.bodies.rectangle import Rectangle
@@ -24,8 +25,6 @@ after a tenth of the time in which it spreads over 30 cells, is off by 0.2 % at 
 relaxation times, and by 1.2, 4.4 and 25 % with one (lbm.begun_couette)."""
 
 
-EDGE = 1e-9
-"""Relative slack of edges that touch."""
 GAP_PEAK = 1.5
 """Largest over mean velocity of the parabola in a gap between two solids."""
 ENDS = ("left", "right"), ("bottom", "top")

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from porescale.builders.checks.wall_places import across_walls
 from porescale.builders.initial.contact_laws import law_class
 from porescale.builders.initial.frames import Placed
+from porescale.common.core.constants import EDGE
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.outline import from_sides, within_outline
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
 
 MOST = 0.25
 """Overlap over the sum of radius and thickness up to which bodies may start: a system beyond 0.3 is out of bounds."""
-EDGE = 1e-9
-"""Relative slack of places at the edge of the box."""
 LOOKS = 201
 """Moments at which the way of a container is looked at."""
 WAVES = 0.5

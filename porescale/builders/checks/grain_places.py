@@ -7,6 +7,7 @@ from porescale.builders.checks.rectangle_places import check_rectangles
 from porescale.builders.checks.wall_places import across_walls
 from porescale.builders.initial.placed import hand_names, placed
 from porescale.builders.initial.rectangles import beside
+from porescale.common.core.constants import EDGE
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import DENSEST
@@ -24,8 +25,6 @@ WEAK = 1e-6
 """Gravity, m/s², below which nothing settles in a lifetime."""
 LAST_BITS = 1e-12
 """Relative slack of a disc that is as wide as a period."""
-EDGE = 1e-9
-"""Relative slack of a packing's edges: 8 mm + 4 mm is 12 mm whatever its last bit."""
 
 
 def check_grain_places(scene: Scene, sizes: tuple[float, float, float] | None, faults: list[Fault]) -> None:

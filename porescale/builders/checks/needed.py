@@ -12,11 +12,9 @@ from porescale.builders.checks.combinations import (
 from porescale.builders.checks.contact import check_contact
 from porescale.builders.checks.held_places import check_ring
 from porescale.builders.initial.placed import by_hand
+from porescale.common.core.constants import EDGE
 from porescale.common.core.errors import Fault
 from porescale.scene.scene import Scene
-
-EDGE = 1e-9
-"""Relative slack of places at the edge of the box."""
 
 
 def check_needed(scene: Scene) -> list[Fault]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from porescale.builders.checks.held_places import path_of
 from porescale.builders.initial.rectangles import stands_in
+from porescale.common.core.constants import EDGE
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import AnyArray
 from porescale.dem.discs import Discs
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from porescale.scene.packing import Packing
     from porescale.scene.scene import Scene
 
-EDGE = 1e-9
-"""Relative slack of edges that touch."""
 TOUCH = 1e-3
 """Share of a radius by which a disc may start in a rectangle."""
 NEVER = float("inf")

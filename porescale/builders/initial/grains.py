@@ -79,17 +79,12 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed], *, hasty: bo
         else:
             grains = prepared(scene, packing, box, derived, plates)
         say_void_ratio(packing, grains, around)
-        if around:
-            grains = _with_parts(grains, around, parts)
-        elif parts:
-            grains = joined(grains, together(*parts))
+        grains = _with_parts(grains, around, parts)
     elif scene.grains and packing and packing.compress and not hasty:
         grains = compressed(packing, scene.grains.density, scene.domain.periodic, law, around).grains
         if around:
             say_void_ratio(packing, grains, around)
-            grains = _with_parts(grains, around, parts)
-        elif parts:
-            grains = joined(grains, together(*parts))
+        grains = _with_parts(grains, around, parts)
         grains.set_law(law, wall_law)
     else:
         if packing:
@@ -121,7 +116,9 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed], *, hasty: bo
 
 
 def _with_parts(grains: Grains, around: Obstacles, parts: list[Discs]) -> Grains:
-    """``grains``, a packing made among discs that were held, with these as the scene has them in their places."""
+    """A packing and the scene's other discs; those it was made ``around``, held, give way to these in their places."""
+    if not around:
+        return joined(grains, together(*parts)) if parts else grains
     count = grains.discs.count - len(around.discs)
     packed = Discs(*(getattr(grains.discs, name)[:count] for name in FIELDS))
     return released(grains, together(packed, *parts))
@@ -172,7 +169,7 @@ def prepared_among(
 
 
 def _pile(scene: Scene, packing: Packing) -> Pile:
-    """What is dropped."""
+    """The grains of the packing before they settle, without what stands around them."""
     assert scene.grains
     placed, radii = len(by_hand(scene)) + len(scene.disc), radii_of(packing)
     return Pile(
@@ -184,30 +181,28 @@ def _pile(scene: Scene, packing: Packing) -> Pile:
 
 
 def _placed(packing: Packing, density: float, around: Obstacles) -> Discs:
+    """The packing's discs where they stay: without overlap, beside what stands there."""
     radii = radii_of(packing)
+    lower, upper = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
     sizes: dict[str, Any] = (
         {"diameter": packing.diameter, "spread": packing.size_spread, "packing_fraction": packing.packing_fraction}
         if radii is None else {"radii": radii}
     )  # fmt: skip
-    lower, upper = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
     try:
-        if around:
-            rng, area = np.random.default_rng(packing.seed), packing.width * packing.height
-            own = (
-                draw_radii(area, sizes["diameter"], sizes["spread"], None, sizes["packing_fraction"], rng)
-                if radii is None
-                else radii
-            )
-            placed = around.place(lower, upper, own, packing.seed, (False, False))
-        else:
+        if not around:
             placed = place(lower, upper, seed=packing.seed, **sizes)
+        else:
+            if radii is None:
+                rng, area = np.random.default_rng(packing.seed), packing.width * packing.height
+                radii = draw_radii(area, packing.diameter, packing.size_spread, None, packing.packing_fraction, rng)
+            placed = around.place(lower, upper, radii, packing.seed, (False, False))
     except InputError as error:
         raise by_packing(error) from None
     return make_discs(placed.position, placed.radius, density)
 
 
 def _in_rows(packing: Packing, density: float, around: Obstacles) -> Discs:
-    """Discs of one size on a square lattice over the packing's rectangle, as far apart as its largest, beside what
+    """Discs as large as the packing's largest on a square lattice over its rectangle, a hundredth apart, beside what
     stands there."""
     radii = radii_of(packing)
     largest = packing.diameter * (1.0 + packing.size_spread) if radii is None else 2.0 * float(radii.max())

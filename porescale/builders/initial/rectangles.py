@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from porescale.common.core.constants import EDGE
 from porescale.coupling.coverage.rectangle import Rectangle as LatticeRectangle
 from porescale.dem.forces.rectangle import Rectangle as GrainRectangle
 from porescale.dem.forces.walls import Plate
@@ -11,9 +12,6 @@ from porescale.dem.grains import Grains
 from porescale.lbm.scales import Scales
 from porescale.scene.bodies.rectangle import Rectangle
 from porescale.scene.packing import Packing
-
-EDGE = 1e-9
-"""Relative slack of edges that touch."""
 
 
 def on_the_lattice(sections: Sequence[Rectangle], scales: Scales) -> list[LatticeRectangle]:

@@ -22,7 +22,7 @@ import numpy as np
 
 from porescale.common.compiled.cache import cache_root, hash_of
 from porescale.common.core.atomic import write_bytes
-from porescale.common.core.constants import GRAVITY
+from porescale.common.core.constants import EDGE, GRAVITY
 from porescale.common.core.errors import Fault, InputError, PorescaleError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import Placement, place
@@ -45,7 +45,6 @@ ENERGY = 1e-8  # kinetic energy per grain over m g d that counts as rest
 BALANCE = 3e-3  # mean net force over mean weight that counts as rest
 CHUNK = 500  # steps between checks
 PATIENCE = 400  # chunks of steps that suit the mean grain, before settling gives up; more of shorter ones
-EDGE = 1e-9  # relative slack of the height of a box
 HIGHER, ROUGHLY = 50, 0.05
 """Times that a rectangle is made higher for what stands in it, and by how many diameters at least."""
 WEDGED = ": gaps beside what stands there that are about as wide as a grain wedge some, so widen or close them"
