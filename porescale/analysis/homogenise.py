@@ -102,18 +102,22 @@ def lambda_error(scene: Scene) -> float:
 def ramp_of(section: Homogenise, packing: Packing) -> float:
     """Rate times the time in which a test comes to it: slowly enough for the stiffness of its first loading.
 
-    A wave takes L √(ρ/k) through a cell of side L; a rate that grows evenly over T has strained it by p/k after
+    A wave takes L √(ρ/k) through a cell of height L; a rate that grows evenly over T has strained it by p/k after
     √(2 T p/(rate k)), which WAVES of them make  rate T = WAVES² I² ρ L²/2m,  whatever k and p are.
     """
-    grains = side_of(section, packing) ** 2 / (math.pi / 4.0 * packing.diameter**2)
+    grains = cell_of(section, packing)[1] ** 2 / (math.pi / 4.0 * packing.diameter**2)
     return 0.5 * WAVES**2 * section.inertial_number**2 * grains
 
 
-def side_of(section: Homogenise, packing: Packing) -> float:
-    """Side (m) of the cell that holds the chosen number of grains."""
+def cell_of(section: Homogenise, packing: Packing) -> tuple[float, float]:
+    """(width m, height m) of the cell that holds the chosen number of grains."""
     if packing.sizes:
-        return math.sqrt(sum(math.pi / 4.0 * d**2 * count for d, count in sizes_of(section, packing)) / SOLID)
-    return packing.diameter * math.sqrt(section.grains * math.pi / 4.0 * (1.0 + packing.size_spread**2 / 3.0) / SOLID)
+        side = math.sqrt(sum(math.pi / 4.0 * d**2 * count for d, count in sizes_of(section, packing)) / SOLID)
+    else:
+        discs = section.grains * math.pi / 4.0 * (1.0 + packing.size_spread**2 / 3.0)
+        side = packing.diameter * math.sqrt(discs / SOLID)
+    slender = math.sqrt(section.aspect_ratio)
+    return side / slender, side * slender
 
 
 def sizes_of(section: Homogenise, packing: Packing) -> list[list[float]]:
@@ -130,7 +134,7 @@ def specimen(scene: Scene) -> dict[str, Any]:
     require_measurable(scene)
     section, packing = section_of(scene), packing_of(scene)
     pressure = pressure_of(scene)
-    side = side_of(section, packing)
+    width, height = cell_of(section, packing)
     rate = section.inertial_number * math.sqrt(pressure / mean_mass(scene))
     ramp = ramp_of(section, packing) / rate
     end = section.strain / rate + 0.5 * ramp
@@ -148,14 +152,14 @@ def specimen(scene: Scene) -> dict[str, Any]:
     table = {
         "title": f"Biaxial test: {scene.title}".rstrip(": "),
         "gravity": [0.0, 0.0],
-        "domain": {"width": side, "height": side, **dict.fromkeys(("left", "right", "bottom", "top"), "periodic")},
+        "domain": {"width": width, "height": height, **dict.fromkeys(("left", "right", "bottom", "top"), "periodic")},
         "cell": {"rate_yy": [[0.0, 0.0], [ramp, -rate]], "stress_xx": pressure, "fastest": FASTEST * rate},
         "time": {"end": end},
         "output": {"snapshot_interval": end / SNAPSHOTS, "series_interval": end / ROWS},
         "grains": {
             "density": whole["grains"]["density"],
             "packing": {
-                "left": 0.0, "width": side, "height": side, "pressure": pressure,
+                "left": 0.0, "width": width, "height": height, "pressure": pressure,
                 **{key: value for key, value in grains.items() if value not in (None, [], "")},
             },
         },

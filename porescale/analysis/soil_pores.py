@@ -18,15 +18,16 @@ STEP = 0.02
 """Share by which lambda is raised to see how K follows it."""
 
 
-def flow_numbers(position: Floats, radius: Floats, side: float, cells: int) -> dict[str, float]:
+def flow_numbers(position: Floats, radius: Floats, box: tuple[float, float], cells: int) -> dict[str, float]:
     """K (m²) and what belongs to it of discs at ``position`` (n, 2) m with the ``radius`` (n,) m used in the fluid.
 
-    side : of the periodic cell, m;  cells : per mean hydraulic diameter.  "lattice error" is relative.  The excess is
-    by how much of K a scene with free grains has more at half the cells, by the solid operator that it has by default.
+    box : width and height of the periodic cell, m;  cells : per mean hydraulic diameter.  "lattice error" is relative.
+    The excess is by how much of K a scene with free grains has more at half the cells, by the solid operator that it
+    has by default.
     """
-    fine, coarse = (_through(position, radius, side, part) for part in (cells, cells / 2.0))
-    free = _through(position, radius, side, cells / 2.0, RECOMMENDED)
-    wider = _through(position, (1.0 + STEP) * radius, side, (1.0 + STEP) * cells / 2.0)  # on the same lattice
+    fine, coarse = (_through(position, radius, box, part) for part in (cells, cells / 2.0))
+    free = _through(position, radius, box, cells / 2.0, RECOMMENDED)
+    wider = _through(position, (1.0 + STEP) * radius, box, (1.0 + STEP) * cells / 2.0)  # on the same lattice
     k = fine.permeability
     return {
         "permeability": k,
@@ -47,10 +48,13 @@ def exponent(coarse: Measured, wider: Measured) -> float:
     return math.log(ratio) / math.log1p(STEP) if flows else math.nan
 
 
-def _through(position: Floats, radius: Floats, side: float, cells: float, operator: str = FOR_NARROW_GAPS) -> Measured:
-    """Permeability on the lattice nearest to ``cells`` per diameter that the cell holds whole."""
-    spacing = side / round(side * cells / (2.0 * float(radius.mean())))
+def _through(
+    position: Floats, radius: Floats, box: tuple[float, float], cells: float, operator: str = FOR_NARROW_GAPS
+) -> Measured:
+    """Permeability on the lattice nearest to ``cells`` per diameter that holds the width whole, and the height to half
+    a cell."""
+    spacing = box[0] / round(box[0] * cells / (2.0 * float(radius.mean())))
     return measure(
-        position, radius, (0.0, 0.0), (side, side), spacing, direction="y", periodic=(True, True),
+        position, radius, (0.0, 0.0), box, spacing, direction="y", periodic=(True, True),
         solid_laws={"solid_operator": operator},
     )  # fmt: skip

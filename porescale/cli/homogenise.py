@@ -184,9 +184,9 @@ def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         pass  # not there, torn or of another question: measured anew
     run = open_run(folder)
-    side = float(run.card["scene"]["domain"]["width"])
+    box = float(run.card["scene"]["domain"]["width"]), float(run.card["scene"]["domain"]["height"])
     grains = run.snapshot(0).clouds["grains"]
-    made = flow_numbers(grains.position, ratio * grains.data["radius"], side, cells)
+    made = flow_numbers(grains.position, ratio * grains.data["radius"], box, cells)
     write_text(kept, json.dumps({"of": of, "numbers": made}, indent=1))
     say(f"{folder.name}: K = {made['permeability']:.3g} m^2 at {made['cells']:.3g} cells")
     return made

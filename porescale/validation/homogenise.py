@@ -54,7 +54,7 @@ def array_permeability(share: float = 1.0) -> float:
     """K over that of a square array of solid fraction 0.2, of discs ``share`` times as large; cells 20 across."""
     size = 20.0
     radius = share * size * math.sqrt(0.2 / math.pi)
-    found = flow_numbers(np.array([[10.3, 10.1]]), np.array([radius]), size, round(2.0 * radius))
+    found = flow_numbers(np.array([[10.3, 10.1]]), np.array([radius]), (size, size), round(2.0 * radius))
     return found["permeability"] * DRAG / size**2
 
 

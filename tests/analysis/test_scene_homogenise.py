@@ -122,12 +122,20 @@ def test_a_specimen_is_a_scene_of_the_same_grains_without_walls_weight_and_water
     assert strain == pytest.approx(0.24, rel=1e-12)
 
 
-def test_the_first_loading_lasts_as_long_as_waves_take():
-    given = column(homogenise__pressure=200)
+def test_a_slender_specimen_has_the_same_area():
+    square, slender = (specimen(column(homogenise={"pressure": 200, "aspect_ratio": a}))["domain"] for a in (1, 2))
+    assert square["width"] == square["height"]
+    assert slender["height"] / slender["width"] == pytest.approx(2.0, rel=1e-14)
+    assert slender["height"] * slender["width"] == pytest.approx(square["width"] ** 2, rel=1e-14)
+
+
+@pytest.mark.parametrize("aspect_ratio", [1, 2])
+def test_the_first_loading_lasts_as_long_as_waves_take(aspect_ratio):
+    given = column(homogenise={"pressure": 200, "aspect_ratio": aspect_ratio})
     packing = given.grains.packing
     table = specimen(given)
     times, rate = table["cell"]["rate_yy"][1]
-    wave = table["domain"]["width"] * math.sqrt(2500.0 / given.contact.stiffness)
+    wave = table["domain"]["height"] * math.sqrt(2500.0 / given.contact.stiffness)
     strain = 200.0 / given.contact.stiffness
     assert math.sqrt(2.0 * strain * times / -rate) == pytest.approx(WAVES * wave, rel=1e-12)
     assert ramp_of(section_of(given), packing) == pytest.approx(-rate * times, rel=1e-12)
@@ -147,7 +155,9 @@ def test_what_cannot_be_homogenised_is_refused(changes, said):
         specimen(column(**changes))
 
 
-@pytest.mark.parametrize("changes", [{"pressure": 0}, {"packings": 1}, {"grains": 10}, {"strain": 2}, {"cels": 3}])
+@pytest.mark.parametrize(
+    "changes", [{"pressure": 0}, {"packings": 1}, {"grains": 10}, {"strain": 2}, {"cels": 3}, {"aspect_ratio": 5}]
+)
 def test_wrong_keys_are_refused(changes):
     with pytest.raises(InputError, match="homogenise"):
         column(homogenise=changes)

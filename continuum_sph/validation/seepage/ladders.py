@@ -1,4 +1,4 @@
-"""Convergence of water in soil: consolidation, sheet pile, imbibition at several spacings."""
+"""Convergence of water in soil: consolidation, sheet pile, imbibition, wet slopes at several spacings."""
 
 from dataclasses import replace
 from functools import partial
@@ -6,6 +6,7 @@ from functools import partial
 from continuum_sph.validation.seepage.consolidation import LAYER, consolidation
 from continuum_sph.validation.seepage.infiltration import DRAWN, fronts
 from continuum_sph.validation.seepage.sheet_pile import SheetPile, flow
+from continuum_sph.validation.seepage.wet_slopes import SEEPING, STILL, WetSlope, friction
 from porescale.common.evidence.convergence import Ladders
 
 LADDERS = Ladders()
@@ -54,3 +55,26 @@ for which, (name, title, order) in enumerate((
 def front(rows: float) -> float:
     """Exact: Green & Ampt 1911 without capillarity and gravity."""
     return abs(fronts(replace(DRAWN, rows=int(rows)), (0.6,))[0] - 1.0)
+
+
+def slope_error(given: WetSlope, rows: float) -> float:
+    """|friction that a wet layer shows over sin φ, less 1|."""
+    return abs(friction(replace(given, rows=int(rows))) / given.friction - 1.0)
+
+
+for name, title, given in (
+    (
+        "seepage.friction_under_water",
+        "Relative error of the friction of an endless layer in still water, on 28°",
+        STILL,
+    ),
+    ("seepage.friction_with_seepage", "The same of one that water seeps along, on 16°", SEEPING),
+):
+    LADDERS.ladder(
+        name,
+        title=title,
+        along="rows of particles",
+        levels=(10, 20, 40, 80),
+        because="no order is expected: half of the row at the floor is held, 0.5/N of what drives, and water at the "
+        "surface of the ground has either sign",
+    )(partial(slope_error, given))

@@ -13,6 +13,7 @@ class Homogenise(Section):
 
     pressure: float | None = quantity("Pa", None, gt=0, le=1e12, help="mean stress at which the soil is measured")
     grains: int = pydantic.Field(800, ge=100, le=100_000, description="grains in a specimen")
+    aspect_ratio: float = quantity("", 1.0, ge=0.25, le=4, help="height of a specimen over its width")
     packings: int = pydantic.Field(6, ge=2, le=1000, description="specimens, from the packing's seed on")
     strain: float = quantity("", 0.24, ge=0.03, le=1, help="logarithmic axial strain of a test")
     inertial_number: float = quantity("", 1e-3, ge=1e-6, le=1e-2, help="rate of a test, quasi-static to 1e-3")

@@ -243,6 +243,7 @@ def gebart(fraction: float) -> float:
     because="7.2 %: his film leaves out terms of the order of the gap over the diameter, 0.144, of which one half is"
     " allowed (point forces: 6.3 % of the drag)",
     tolerance=0.072,
+    slow=True,
 )
 def permeability() -> Measured:
     """K/R² at 40 cells per diameter, tau 0.8."""

@@ -271,6 +271,7 @@ def bouncing_order() -> Measured:
     source="first law: polygons, rods, discs and clumps that collide, rub and lose energy in dashpots",
     because="a dashpot is counted half a step too long at touch: 2 h w0 dt = 2 0.1 pi/200 of what it takes",
     tolerance=0.2 * math.pi / 200.0,
+    slow=True,
 )
 def rubbing() -> Measured:
     """Largest unaccounted energy over the kinetic energy at the start, 36 bodies in free space."""

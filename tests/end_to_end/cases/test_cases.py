@@ -147,7 +147,7 @@ FEW = "output.snapshot_interval=0.45"
 """Few frames: pictures take longer than the steps of a small case."""
 
 
-@pytest.mark.parametrize("quality", ["standard", "draft"])
+@pytest.mark.parametrize("quality", [pytest.param("standard", marks=pytest.mark.slow), "draft"])
 def test_the_settling_disc_reaches_the_published_speed(porescale, tmp_path, quality):
     out = tmp_path / quality
     words = ("--quality", quality, "--set", FEW, "--out", out, "--quiet", "--threads", 1)
