@@ -75,6 +75,5 @@ for name, title, given in (
         title=title,
         along="rows of particles",
         levels=(10, 20, 40, 80),
-        because="no order is expected: half of the row at the floor is held, 0.5/N of what drives, and water at the "
-        "surface of the ground has either sign",
+        because="half of the row at the floor is held, 0.5/N of what drives: first order, if nothing else were off",
     )(partial(slope_error, given))
