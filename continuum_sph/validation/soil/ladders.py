@@ -1,5 +1,5 @@
-"""Convergence of soil, at several spacings: the friction of an endless layer that slides, from a strewn lattice, and
-how far columns run out."""
+"""Convergence of soil, at several spacings: the friction of an endless layer that slides, from a strewn lattice, the
+creep of a slope, and how far columns run out."""
 
 from functools import partial
 from typing import Any
@@ -8,7 +8,7 @@ import numpy as np
 
 from continuum_sph.validation.soil.run_outs import BEADS, SAND, Grains, run_outs
 from continuum_sph.validation.soil.setups import TAN_PHI
-from continuum_sph.validation.soil.slopes import strewn_friction
+from continuum_sph.validation.soil.slopes import NEAR, slope, strewn_friction
 from porescale.common.evidence.convergence import Ladders
 
 LADDERS = Ladders()
@@ -36,6 +36,18 @@ for name, title, because, options in (
     LADDERS.ladder(name, title=title, along="rows of particles", levels=(10, 20, 40, 80), because=because)(
         partial(friction_error, options)
     )
+
+
+@LADDERS.ladder(
+    "soil.creep_near_the_limit",
+    title="Largest displacement in 5 s of a slope 1 m high, 2° below its limit, m",
+    along="rows of particles over its height",
+    levels=(20, 40, 80),
+    because="no order is expected: below the limit nothing shears; 1 mm is allowed, a shear strain of 1e-3",
+)
+def creep(rows: float) -> float:
+    """m; exact: 0."""
+    return slope(NEAR, 5.0, int(rows))
 
 
 def run_out_error(grains: Grains, rows: float) -> float:
