@@ -77,6 +77,11 @@ def seepage_report(scene: Scene) -> Report:
             f"water at rest over ground keeps its level for some {STEPS} steps; then its lattice gives way, and it "
             f"sinks by up to a hundredth of its depth; numerics.smoothing_ratio = {RATIO:g} mends it"
         )
+    if scene.output.energy:
+        out.warn(
+            "energy balance (J/m) is of the water alone: what it gives to soil and takes from it, heat of drag (J/m), "
+            "and water that reservoirs and faces let in or out are not in it, so it does not stay constant here"
+        )
     if scene.pile:
         pile_report(scene, out)
     if scene.reservoir:

@@ -119,3 +119,12 @@ def test_the_sheet_is_drawn_in_the_column_that_stands_for_it():
 
 def test_check_says_where_the_sheet_stands():
     assert rows(piled(0.6, 0.5, pile={"x": 0.45, "tip": 0.15}))["stands at"] == pytest.approx(0.475, rel=1e-12)
+
+
+def test_the_energy_balance_of_water_among_grains_is_said_to_be_open():
+    told = "energy balance (J/m) is of the water alone"
+    output = {"snapshot_interval": 0.1, "series_interval": 0.1, "energy": True}
+    assert any(told in it for it in report(scene(output=output)).warnings)
+    assert not any(told in it for it in report(scene()).warnings)
+    alone = scene_as_dict(scene(output=output)) | {"soil": None}
+    assert not any(told in it for it in report(validate(Scene, alone)).warnings)
