@@ -243,6 +243,14 @@ def test_grains_that_sink_for_ever_in_fluid_that_nothing_holds_are_warned_of():
         assert not warned(column(**ONE, **(sides | held)), "nothing holds")
 
 
+def test_a_held_disc_of_too_few_cells_is_warned_of_beside_free_grains_too():
+    """Free grains alone were judged where there are any."""
+    tiny = {"disc": [{"x": 0.009, "y": 0.004, "diameter": 1e-4}]}
+    (line,) = warned(column(**ONE, **tiny), "the smallest held disc has")
+    assert line.partition("has ")[2] in warned(water(**tiny), "cells per diameter")  # as it is said of one alone
+    assert not warned(column(**ONE, disc=[{"x": 0.009, "y": 0.004, "diameter": 2e-3}]), "held disc")
+
+
 def test_a_relaxation_time_at_which_no_flow_begins_right_is_warned_of():
     channel = {"domain__left": "periodic", "domain__right": "periodic", "gravity": [0, 0], "fluid__body_force": None}
     (line,) = warned(water(**channel, fluid__step=1e-2), "relaxation time")
