@@ -200,7 +200,7 @@ class Scene(SceneBase):
     def _wet_soil(self, soil: SoilSection) -> list[Fault]:
         """Keys of the soil that need water, or exclude each other."""
         faults = []
-        if soil.held and self.dry:
+        if soil.held and self.dry and soil.suction is None:
             faults.append(Fault("soil.held", True, "is of soil with water, of which there is none",
                                 repair="add [[water.column]], [[reservoir]] or [[face]]"))  # fmt: skip
         for key, there in (("held", soil.held), ("water_table", soil.water_table)):

@@ -9,7 +9,7 @@ from continuum_sph.builders.parts.faces import pressure_face
 from continuum_sph.builders.parts.held_soil import held_ground
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
-from continuum_sph.builders.parts.soil import material_of, soil_flow, soil_section
+from continuum_sph.builders.parts.soil import material_of, porous_section, soil_flow, soil_section
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
@@ -144,7 +144,7 @@ def ground_of(scene: Scene) -> tuple[SoilFlow | Frame, Skeleton]:
 
 def seepage_flow(scene: Scene) -> Seepage:
     """Soil and water of a scene, ready for their first step."""
-    section, law, spacing = soil_section(scene), pore_law(scene), scene.numerics.spacing
+    section, law, spacing = porous_section(scene), pore_law(scene), scene.numerics.spacing
     ground, skeleton = ground_of(scene)
     x, v, rho = saturate(scene, skeleton.x, *water_particles(scene, law))
     if section.stress == "unconsolidated" and isinstance(ground, SoilFlow):

@@ -9,14 +9,13 @@ from continuum_sph.builders.parts.air import air_report, dry_pores
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, water_counts
 from continuum_sph.builders.parts.sheet_pile import LEAST, OPEN, given_heads, ground_at, resolved
-from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
+from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.water import wall_layers, water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
 from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
 from continuum_sph.water.smoothing import RATIO
 from porescale.common.api.report import Report, report_output
@@ -48,10 +47,7 @@ def seepage_report(scene: Scene) -> Report:
         raise InputError(Fault("inclusion", "given", "cannot be with soil", repair="take out [inclusion] or [soil]"))
     if scene.tank.wall_particles == "images":
         raise InputError(Fault("tank.wall_particles", "images", "cannot be with soil", repair='use "pressure"'))
-    section = soil_section(scene)
-    if section.porosity < LEAST_POROSITY:
-        least = f">= {LEAST_POROSITY:g} with water"
-        raise InputError(Fault("soil.porosity", section.porosity, "leaves water no room", "", least, "raise it"))
+    section = porous_section(scene)
     soil, _ = soil_particles(scene)
     water, waiting = water_counts(scene, soil)
     out = water_report(scene, water)

@@ -2,7 +2,7 @@
 
 import math
 
-from continuum_sph.builders.parts.soil import material_of, soil_law, soil_section
+from continuum_sph.builders.parts.soil import material_of, porous_section, soil_law
 from continuum_sph.builders.parts.suction import retention_of, suction_section
 from continuum_sph.builders.reports.seepage_report import STIFF
 from continuum_sph.builders.reports.soil_report import soil_report
@@ -19,7 +19,7 @@ STAGES = 2.4e6  # particle-stages of the flow a second and thread, measured like
 def suction_report(scene: Scene) -> Report:
     """The soil's report, and how its water rises, sinks and limits steps; InputError for retention the water is too
     soft for."""
-    section, suction, law = soil_section(scene), suction_section(scene), retention_of(scene)
+    section, suction, law = porous_section(scene), suction_section(scene), retention_of(scene)
     numbers, porosity = law.numbers, section.porosity
     modulus, h = material_of(section).column_modulus, soil_law(scene).smoothing.length
     whole = section.density + numbers.residual * porosity * scene.water.density

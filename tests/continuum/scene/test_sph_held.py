@@ -99,8 +99,7 @@ def test_full_pores_are_water_where_a_scene_has_no_other(pores, rows, tall, held
     assert given.sound_speed == pytest.approx(10.0 * (2.0 * given.gravity * tall) ** 0.5)
     column = {"column": [{"left": 0.4, "width": 0.4, "height": tall}], "pressure": "hydrostatic"}
     layer, laid = (
-        Simulation(it).flow.water.layer
-        for it in (given, scene({"held": held}, water=column, reservoir=[], **CLOSED))
+        Simulation(it).flow.water.layer for it in (given, scene({"held": held}, water=column, reservoir=[], **CLOSED))
     )
     assert layer.fluid == laid.fluid == 8 * rows
     for of in ("x", "mass", "density", "pressure"):  # the same water, laid into the pores as a column
