@@ -79,6 +79,12 @@ def test_pores_without_room_for_water_are_refused(look, porosity):
     look(scene(soil={"porosity": 0.05}))
 
 
+def test_check_says_of_which_gravity_permeability_is_with_suction():
+    told = "soil.permeability and alpha are those under the scene's gravity"
+    assert any(told in it for it in report(scene(gravity=98.1, water={"sound_speed": 240.0})).warnings)
+    assert not any(told in it for it in report(scene(gravity=9.8)).warnings)
+
+
 def test_check_says_how_high_water_is_drawn_and_how_soon():
     out = report(scene())
     text = str(out)
