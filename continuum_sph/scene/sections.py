@@ -65,13 +65,22 @@ class Scene(SceneBase):
 
     @property
     def head(self) -> float:
-        """Highest head above the floor, m: of water in the open, and of faces."""
-        return max([self.highest, *(it.highest for it in self.face)])
+        """Highest head above the floor, m: of water in the open and of faces; without them of that in pores."""
+        return max([self.highest, *(it.highest for it in self.face)]) or self.pores_full_to
+
+    @property
+    def pores_full_to(self) -> float:
+        """Height above the floor up to which pores of soil are full at the start, m; 0 where they are dry."""
+        if self.soil is None or self.soil.suction is not None:
+            return 0.0
+        if self.soil.water_table is not None:
+            return min(self.soil.water_table, self.soil.height)
+        return self.soil.height if self.soil.saturated else 0.0
 
     @property
     def has_water(self) -> bool:
         """Whether there is water, now or later."""
-        return bool(self.water.column or self.reservoir or self.face)
+        return bool(self.water.column or self.reservoir or self.face or self.pores_full_to > 0.0)
 
     @property
     def fall_speed(self) -> float:
@@ -158,7 +167,7 @@ class Scene(SceneBase):
         faults += self._misplaced()
         if 0.0 < self.gravity < WEAKEST:
             faults.append(Fault("gravity", self.gravity, "is too weak to move water", "m/s^2", f"0 or >= {WEAKEST:g}"))
-        if self.gravity == 0.0 and (columns or self.reservoir) and self.water.sound_speed is None:
+        if self.gravity == 0.0 and self.has_water and self.water.sound_speed is None:
             faults.append(Fault("water.sound_speed", None, "is needed when there is no gravity to take it from"))
         if faults:
             raise Refused(*faults)
@@ -191,11 +200,11 @@ class Scene(SceneBase):
     def _wet_soil(self, soil: SoilSection) -> list[Fault]:
         """Keys of the soil that need water, or exclude each other."""
         faults = []
-        for key, there in (("held", soil.held), ("water_table", soil.water_table is not None)):
-            if there and self.dry:
-                faults.append(Fault(f"soil.{key}", there, "is of soil with water, of which there is none",
-                                    repair="add [[water.column]], [[reservoir]] or [[face]]"))  # fmt: skip
-            if there and soil.suction is not None:
+        if soil.held and self.dry and soil.suction is None:
+            faults.append(Fault("soil.held", True, "is of soil with water, of which there is none",
+                                repair="add [[water.column]], [[reservoir]] or [[face]]"))  # fmt: skip
+        for key, there in (("held", soil.held), ("water_table", soil.water_table)):
+            if soil.suction is not None and there not in (None, False):
                 faults.append(Fault(f"soil.{key}", there, "cannot be with soil.suction", repair="take out one of them"))
         if self.face and soil.suction is not None:
             faults.append(Fault("face", "given", "cannot be with soil.suction", repair="take out one of them"))

@@ -119,7 +119,7 @@ class SoilSection(Section):
     cohesion: float = quantity("Pa", 0.0, ge=0, le=1e9, help="cohesion")
     tension: float = quantity("Pa", 0.0, ge=0, le=1e9, help="largest tension")
     elastic: bool = pydantic.Field(False, description="never yields")
-    permeability: float = quantity("m/s", 1e-3, ge=1e-12, le=10, help="k at the porosity of the start")
+    permeability: float = quantity("m/s", 1e-3, ge=1e-12, le=10, help="k at the porosity of the start, under 9.81 m/s2")
     permeability_law: Literal["constant", "kozeny-carman"] = pydantic.Field(
         default="constant", description="how permeability follows the porosity"
     )

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from continuum_sph.scene.bounds import WHOLE
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Section, quantity
 
@@ -33,6 +34,9 @@ class SuctionSection(Section):
         if self.saturation is not None and self.saturation <= self.residual:
             found.append(Fault(f"{key}.saturation", self.saturation, "is none that drains to the residual", "",
                                f"> {self.residual:g}"))  # fmt: skip
+        if self.water_table is not None and self.water_table > scene.tank.height * (1.0 + WHOLE):
+            found.append(Fault(f"{key}.water_table", self.water_table, "lies over the tank", "m",
+                               f"<= {scene.tank.height:g}"))  # fmt: skip
         if scene.gravity == 0.0:
             found.append(Fault("gravity", 0.0, "gives suction in metres of water no pressure", "m/s^2", "> 0"))
         elif scene.sound_speed == 0.0:

@@ -148,7 +148,7 @@ def probe_row(
 def level_row(levels: tuple[LevelSection, ...], cloud: MeasuredWater) -> dict[str, float]:
     """Columns of levels.csv: height of the water surface at each level, m.
 
-    NAME (m) : height of the water's surface in the strip of the level
+    NAME (m) : height of the water's surface in the strip of the level; 0 where water fills no half of a row
     """
     return {f"{level.name or f'level {k}'} (m)": surface_height(level, cloud) for k, level in enumerate(levels)}
 

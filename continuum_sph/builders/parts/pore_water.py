@@ -9,7 +9,7 @@ from continuum_sph.builders.parts.faces import pressure_face
 from continuum_sph.builders.parts.held_soil import held_ground
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
-from continuum_sph.builders.parts.soil import material_of, soil_flow, soil_section
+from continuum_sph.builders.parts.soil import material_of, porous_section, soil_flow, soil_section
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
@@ -22,6 +22,7 @@ from continuum_sph.water.density import LINEAR
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.state import Layer
+from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
 from porescale.common.schema.names import names_of
@@ -86,15 +87,15 @@ def leave_to_water(scene: Scene, ground: SoilFlow, x: Floats, v: Floats, rho: Fl
     """Densities (n,) of water at ``x`` (n, 2) m, with ``rho`` (n,) at rest, when it bears the weight of the soil.
 
     Overwrites the velocities of the soil and of the water in it, ``v`` (n, 2) m/s: they pass each other upright at
-    Darcy's velocity, q = k γ'/(ρ g), and together displace nothing: n v_w + (1 - n) v_s = 0.  From rest the momentum
-    that this has would ring in both as sound, by k c/(g H) of the weight.
+    Darcy's velocity, q = k γ'/(ρ g) with the g of k, and together displace nothing: n v_w + (1 - n) v_s = 0.  From rest
+    the momentum that this has would ring in both as sound, by k c/(g H) of the weight.
     """
     section, state = soil_section(scene), water_state(scene)
     n = section.porosity
     depth = np.max([body.top(x[:, 0]) for body in section.body], axis=0) - x[:, 1]
     inside = np.any([body.holds(x) for body in section.body], axis=0)
     borne = section.density * scene.gravity * depth - buoyancy(scene, x)
-    q = section.permeability * (section.density / scene.water.density - (1.0 - n))
+    q = section.permeability * (section.density / scene.water.density - (1.0 - n)) * (scene.gravity / GRAVITY)
     v[inside, 1] = q * (1.0 - n) / n
     ground.soil.v[: ground.soil.soil, 1] = -q
     found: Floats = state.density_at(state.pressure(rho) + np.where(inside, np.maximum(borne, 0.0), 0.0))
@@ -144,7 +145,7 @@ def ground_of(scene: Scene) -> tuple[SoilFlow | Frame, Skeleton]:
 
 def seepage_flow(scene: Scene) -> Seepage:
     """Soil and water of a scene, ready for their first step."""
-    section, law, spacing = soil_section(scene), pore_law(scene), scene.numerics.spacing
+    section, law, spacing = porous_section(scene), pore_law(scene), scene.numerics.spacing
     ground, skeleton = ground_of(scene)
     x, v, rho = saturate(scene, skeleton.x, *water_particles(scene, law))
     if section.stress == "unconsolidated" and isinstance(ground, SoilFlow):

@@ -20,6 +20,7 @@ from continuum_sph.builders.sanity import (
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import Body, SoilSection
+from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw, porosity
 from continuum_sph.soil.parameters import RULES
@@ -262,6 +263,15 @@ def soil_section(scene: Scene) -> SoilSection:
     """The soil of a scene that has some."""
     assert scene.soil is not None
     return scene.soil
+
+
+def porous_section(scene: Scene) -> SoilSection:
+    """The soil of a scene whose pores have room for water; InputError without."""
+    section = soil_section(scene)
+    if section.porosity < LEAST_POROSITY:
+        least = f">= {LEAST_POROSITY:g} with water"
+        raise InputError(Fault("soil.porosity", section.porosity, "leaves water no room", "", least, "raise it"))
+    return section
 
 
 def material_of(section: SoilSection) -> Material:

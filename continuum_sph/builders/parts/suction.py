@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from continuum_sph.builders.assembly import Assembly
-from continuum_sph.builders.parts.soil import SoilPart, material_of, soil_flow, soil_section
+from continuum_sph.builders.parts.soil import SoilPart, material_of, porous_section, soil_flow, soil_section
 from continuum_sph.builders.sanity import Now, Range, require_finite, require_within
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.suction import SuctionSection
@@ -104,7 +104,7 @@ def rest(scene: Scene, both: MoistSoil, material: Material) -> None:
 
 def moist_soil(scene: Scene) -> MoistSoil:
     """Soil and its water, ready for the first step."""
-    section, suction, ground = soil_section(scene), suction_section(scene), soil_flow(scene)
+    section, suction, ground = porous_section(scene), suction_section(scene), soil_flow(scene)
     law, material, spacing, soil = retention_of(scene), material_of(section), scene.numerics.spacing, ground.soil
     smoothing = ground.law.smoothing
     c = unity(smoothing.kind, smoothing.length / spacing)

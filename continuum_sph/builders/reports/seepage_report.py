@@ -9,17 +9,17 @@ from continuum_sph.builders.parts.air import air_report, dry_pores
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, water_counts
 from continuum_sph.builders.parts.sheet_pile import LEAST, OPEN, given_heads, ground_at, resolved
-from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
+from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.water import wall_layers, water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
 from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
 from continuum_sph.water.smoothing import RATIO
 from porescale.common.api.report import Report, report_output
+from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.schema.names import names_of
@@ -48,10 +48,7 @@ def seepage_report(scene: Scene) -> Report:
         raise InputError(Fault("inclusion", "given", "cannot be with soil", repair="take out [inclusion] or [soil]"))
     if scene.tank.wall_particles == "images":
         raise InputError(Fault("tank.wall_particles", "images", "cannot be with soil", repair='use "pressure"'))
-    section = soil_section(scene)
-    if section.porosity < LEAST_POROSITY:
-        least = f">= {LEAST_POROSITY:g} with water"
-        raise InputError(Fault("soil.porosity", section.porosity, "leaves water no room", "", least, "raise it"))
+    section = porous_section(scene)
     soil, _ = soil_particles(scene)
     water, waiting = water_counts(scene, soil)
     out = water_report(scene, water)
@@ -62,9 +59,8 @@ def seepage_report(scene: Scene) -> Report:
     out.heading("soil and water")
     stiff = state.density * state.sound_speed**2
     step = min(step_limits(scene, law))  # of air beside water, too
-    if scene.gravity > 0.0:
-        drag = section.permeability / (section.porosity * scene.gravity)
-        out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
+    drag = section.permeability / (section.porosity * GRAVITY)
+    out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
         step = min(step, moving(scene, out, stiff))
     air = len(dry_pores(scene.water.column, soil)) if scene.air else 0
@@ -76,6 +72,11 @@ def seepage_report(scene: Scene) -> Report:
         out.warn(
             f"water at rest over ground keeps its level for some {STEPS} steps; then its lattice gives way, and it "
             f"sinks by up to a hundredth of its depth; numerics.smoothing_ratio = {RATIO:g} mends it"
+        )
+    if scene.output.energy:
+        out.warn(
+            "energy balance (J/m) is of the water alone: what it gives to soil and takes from it, heat of drag (J/m), "
+            "and water that reservoirs and faces let in or out are not in it, so it does not stay constant here"
         )
     if scene.pile:
         pile_report(scene, out)
@@ -116,17 +117,16 @@ def cost(scene: Scene, out: Report, step: float, there: Counts) -> None:
 def moving(scene: Scene, out: Report, stiff: float) -> float:
     """Rows on soil that moves with water of a stiffness ρ c² (Pa), ``stiff``; the longest step (s) for their sound."""
     section, h = soil_section(scene), pore_law(scene).smoothing.length
-    porosity, density, gravity, modulus = section.porosity, scene.water.density, scene.gravity, largest_modulus(scene)
+    porosity, density, gravity, modulus = section.porosity, scene.water.density, GRAVITY, largest_modulus(scene)
     sound = (modulus / section.density) ** 0.5
     ratio, whole = stiff / (porosity * modulus), porosity * density + section.density
     out.row("modulus of a column at the floor", modulus, "Pa")
     out.row("longest step for its sound", min(soil_law(scene).limits(0.0, sound / h, float("inf"))), "s")
     out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
     out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
-    if gravity > 0.0:
-        spread = section.permeability * modulus / (density * gravity)
-        out.row("consolidation coefficient", spread, "m2/s")
-        out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
+    spread = section.permeability * modulus / (density * gravity)
+    out.row("consolidation coefficient", spread, "m2/s")
+    out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
     step = float(SHARE * h / ((modulus + stiff / porosity) / whole) ** 0.5)
     out.row("longest step for sound in both together", step, "s")
     if ratio < STIFF:
@@ -246,7 +246,7 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
         out.row(name, it.table[-1][1], "m", f"head in the end, from {start:g} to {end:g} m along the {it.side}")
     storage = section.porosity / (state.density * state.sound_speed**2)
     storage += 0.0 if section.held else 1.0 / largest_modulus(scene)
-    spread = section.permeability / (state.density * scene.gravity * storage)
+    spread = section.permeability / (state.density * GRAVITY * storage)
     slow = STEADY_AFTER * (float(np.ptp(soil, axis=0).max()) + numerics.spacing) ** 2 / spread
     out.row("time until the flow is steady", slow, "s", "pressures have spread over the longer side of the ground")
     times, last = moments(scene), scene.time.end
@@ -254,7 +254,7 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
     steep = max((float(it.steep.max()) for it in flows), default=0.0)
     lifting = max((float(it.upward.max()) for it in flows), default=0.0)
     if steep > 0.0:
-        way = FARTHEST * numerics.spacing * section.porosity / section.permeability
+        way = FARTHEST * numerics.spacing * section.porosity / (section.permeability * scene.gravity / GRAVITY)
         seconds = min(reached(times, it.steep, way) for it in flows)
         out.row("time in which water passes half a spacing", seconds, "s", "about; a run ends there")
         if last > seconds:

@@ -2,7 +2,7 @@
 
 import math
 
-from continuum_sph.builders.parts.soil import material_of, soil_law, soil_section
+from continuum_sph.builders.parts.soil import material_of, porous_section, soil_law
 from continuum_sph.builders.parts.suction import retention_of, suction_section
 from continuum_sph.builders.reports.seepage_report import STIFF
 from continuum_sph.builders.reports.soil_report import soil_report
@@ -10,7 +10,9 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.unsaturated.richards import MOST_STAGES, SAFE
 from continuum_sph.unsaturated.step import SHARE
 from porescale.common.api.report import Report
+from porescale.common.core.constants import GRAVITY
 
+FROM_EARTHS = 0.01  # of gravity: less is in no permeability that is measured
 HALF = 0.5
 HALVES = 2  # of a step, in each of which water flows so many stages
 STAGES = 2.4e6  # particle-stages of the flow a second and thread, measured like the rate of soil
@@ -19,7 +21,7 @@ STAGES = 2.4e6  # particle-stages of the flow a second and thread, measured like
 def suction_report(scene: Scene) -> Report:
     """The soil's report, and how its water rises, sinks and limits steps; InputError for retention the water is too
     soft for."""
-    section, suction, law = soil_section(scene), suction_section(scene), retention_of(scene)
+    section, suction, law = porous_section(scene), suction_section(scene), retention_of(scene)
     numbers, porosity = law.numbers, section.porosity
     modulus, h = material_of(section).column_modulus, soil_law(scene).smoothing.length
     whole = section.density + numbers.residual * porosity * scene.water.density
@@ -47,6 +49,11 @@ def suction_report(scene: Scene) -> Report:
                  f"%; raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness")  # fmt: skip
     if fringe < 2.0 * scene.numerics.spacing:
         out.warn(f"the capillary height is {fringe / scene.numerics.spacing:.2g} spacings: lower numerics.spacing")
+    if abs(scene.gravity / GRAVITY - 1.0) > FROM_EARTHS:
+        out.warn(
+            f"with suction soil.permeability and alpha are those under the scene's gravity, {scene.gravity:g} m/s2, "
+            f"not under {GRAVITY:g} m/s2 as in soil without: in a centrifuge of N g give N times k, and N times alpha"
+        )
     crest = section.height
     if any(it.highest > crest for it in scene.reservoir):
         out.warn("a level stands over the soil: open water is at rest, so it then stands on both sides of the soil")

@@ -15,6 +15,7 @@ from porescale.common.core.errors import Fault
 from porescale.lbm.scales import Scales
 from porescale.scene.bodies.rectangle import Rectangle
 from porescale.scene.domain import Domain
+from porescale.scene.grains import Grains
 from porescale.scene.scene import Scene
 
 FILLED_WARN = 0.01
@@ -165,17 +166,23 @@ def _past_free_grains(scene: Scene, scales: Scales, axis: int) -> float:
         return math.inf
     assert scene.fluid
     assert not isinstance(scene.fluid.body_force, OwnLaw)
-    ratio, packing = grains.hydraulic_radius_ratio or 1.0, grains.packing
-    solids = [_disc(it.x, it.y, 0.5 * it.diameter, ratio) for it in by_hand(scene)]
-    if packing:
-        corners = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
-        area = ratio**2 * packing.packing_fraction * packing.width * packing.height
-        solids.append(Solid(*corners, area, 0.5 * ratio * packing.diameter))
+    solids = _free_discs(scene, grains, grains.hydraulic_radius_ratio or 1.0)
     share = sum(it.area for it in solids) / (scene.domain.width * scene.domain.height)
     force = scene.fluid.body_force[axis]
     pull = force + share * (grains.density - scales.density) * scene.gravity[axis]
     together = abs(pull) / (scales.density * (1 - share) + grains.density * share) * scene.time.end
     return together + abs(force) / scales.density * _past_solids(scene, solids, axis) / scales.viscosity
+
+
+def _free_discs(scene: Scene, grains: Grains, ratio: float) -> list[Solid]:
+    """What ``grains`` are placed by hand, and the packing as one solid, with radii ``ratio`` times their own."""
+    packing = grains.packing
+    solids = [_disc(it.x, it.y, 0.5 * it.diameter, ratio) for it in by_hand(scene)]
+    if packing:
+        corners = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
+        area = ratio**2 * packing.packing_fraction * packing.width * packing.height
+        solids.append(Solid(*corners, area, 0.5 * ratio * packing.diameter))
+    return solids
 
 
 def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault], warnings: list[str]) -> None:
@@ -190,6 +197,7 @@ def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault],
             warnings.append(f"{what} lets it {way}: the density changes by as much; {repair}")
     _check_gaps(scene, scales, faults, warnings)
     _check_tilt(scene, scales, warnings)
+    _check_unheld(scene, scales, warnings)
     if not solids and scales.relaxation_time > LONGEST_ALONE:
         step = (LONGEST_ALONE - 0.5) / 3 * scales.spacing**2 / scales.viscosity
         warnings.append(
@@ -263,6 +271,30 @@ def _check_tilt(scene: Scene, scales: Scales, warnings: list[str]) -> None:
         f"gravity along {'xy'[along[0]]}, which is periodic, drives grains but no fluid: pressure balances it;"
         f" fluid.body_force = [{wanted[0]:g}, {wanted[1]:g}] drives it"
     )
+
+
+def _check_unheld(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Warn where free grains sink, or rise, along a periodic axis and nothing holds the fluid that goes with them: no
+    side with friction, no solid that stands and no body force.  Both together then gain speed until the end."""
+    assert scene.fluid
+    force, d = scene.fluid.body_force, scene.domain
+    stands = bool(_standing(scene)) or any(it.held for it in scene.polygon)
+    if scene.grains is None or isinstance(force, OwnLaw) or stands:
+        return
+    share = sum(it.area for it in _free_discs(scene, scene.grains, 1.0)) / (d.width * d.height)
+    for axis, name in enumerate("xy"):
+        borne = any(_has_friction(d, side) for side in ENDS[1 - axis])
+        pull = share * (scene.grains.density - scales.density) * scene.gravity[axis]
+        if not d.periodic[axis] or borne or force[axis] or not pull:
+            continue
+        both = scales.density * (1 - share) + scene.grains.density * share
+        wanted = [-pull if k == axis else force[k] for k in range(2)]
+        known = not (scene.clump or scene.polygon or scene.material)  # whose areas or densities differ
+        value = f" = [{wanted[0]:.4g}, {wanted[1]:.4g}]" if known else ""
+        warnings.append(
+            f"nothing holds the fluid along {name}: it goes with the grains, and both gain {abs(pull) / both:.2g} m/s a"
+            f" second; a fluid.body_force{value} against it balances the buoyant weight of the grains"
+        )
 
 
 def filled_by(scene: Scene) -> float:

@@ -268,6 +268,9 @@ def check_regime(
     found = [coarse(mean, *laws, scales.spacing, filled), slow(scales.relaxation_time, laws[0])]
     if smallest < SMALLEST * mean:
         found.append(coarse_smallest(smallest, mean, scales.spacing))
+    if scene.grains and scene.disc:  # the sizes are those of what is free
+        held = coarse(min(it.diameter for it in scene.disc) / scales.spacing, *laws, scales.spacing)
+        found.append(f"the smallest held disc has {held}" if held and held not in found else "")
     if scene.grains:
         found.append(
             light(least_density(MaterialPlan.of(scene), scene.clump) / scales.density, smallest, *laws, scales.spacing)

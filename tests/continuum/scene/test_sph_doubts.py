@@ -119,3 +119,37 @@ def test_the_sheet_is_drawn_in_the_column_that_stands_for_it():
 
 def test_check_says_where_the_sheet_stands():
     assert rows(piled(0.6, 0.5, pile={"x": 0.45, "tip": 0.15}))["stands at"] == pytest.approx(0.475, rel=1e-12)
+
+
+@pytest.mark.parametrize("times", [1.0, 10.0])
+def test_permeability_is_that_under_the_gravity_of_the_earth(times):
+    """In a centrifuge of 10 g water passes ten times as fast; k M/(ρ g) of consolidation, with the g of k, stays.
+
+    `check` took the scene's gravity: its times were too long by as much."""
+    heads = {"face": [{"side": "left", "head": 1.0}, {"side": "right", "head": 0.9}]}
+    tank = {"tank": {"width": 1.0, "height": 0.4}, "water": {"sound_speed": 60.0 * times**0.5}}
+    given = scene(depth=0.0, soil={"held": True}, gravity=9.81 * times, **heads, **tank)
+    told, k, n = rows(given), 5e-3, 0.4
+    assert told["time in which drag stops water in pores"] == pytest.approx(k / (n * 9.81))
+    storage = n / (1000.0 * 60.0**2 * times)  # of the water alone
+    assert told["time until the flow is steady"] == pytest.approx(2.0 * 1.0**2 * 1000.0 * 9.81 * storage / k, rel=1e-6)
+    soon = told["time in which water passes half a spacing"]
+    assert soon * times == pytest.approx(0.5 * 0.05 * n / (k * 0.1), rel=0.1)  # particles stand 0.95 m apart, not 1 m
+    model = Simulation(given)
+    while model.time < 0.3 / times:
+        model.advance(20)
+    flow = model.series()["face 0 flow in (m2/s)"]
+    assert flow == pytest.approx(times * k * 0.1 * 0.4, rel=0.03)
+    # D t/L² is 1.4: exp(-π² 1.4) is left, and 2 % of 8 rows; the earth's flow at 10 g would be 90 % off
+    loose = scene(gravity=9.81 * times)
+    spread = rows(loose)["consolidation coefficient"]
+    assert spread == pytest.approx(k * rows(loose)["modulus of a column at the floor"] / 9810.0)
+
+
+def test_the_energy_balance_of_water_among_grains_is_said_to_be_open():
+    told = "energy balance (J/m) is of the water alone"
+    output = {"snapshot_interval": 0.1, "series_interval": 0.1, "energy": True}
+    assert any(told in it for it in report(scene(output=output)).warnings)
+    assert not any(told in it for it in report(scene()).warnings)
+    alone = scene_as_dict(scene(output=output)) | {"soil": None}
+    assert not any(told in it for it in report(validate(Scene, alone)).warnings)

@@ -90,6 +90,28 @@ def test_pores_under_a_water_table_are_full_and_those_over_it_empty():
         assert layer.fluid == 8 * 4 + 8 * rows  # the pool's, and those in pores
 
 
+@pytest.mark.parametrize(("pores", "rows", "tall"), [({"saturated": True}, 8, 0.4), ({"water_table": 0.2}, 4, 0.2)])
+@pytest.mark.parametrize("held", [True, False])
+def test_full_pores_are_water_where_a_scene_has_no_other(pores, rows, tall, held):
+    """Earlier, `saturated` went unheard in a scene without open water: its ground was dry."""
+    given = scene({"held": held} | pores, water={}, reservoir=[], **CLOSED)
+    assert not given.dry
+    assert given.sound_speed == pytest.approx(10.0 * (2.0 * given.gravity * tall) ** 0.5)
+    column = {"column": [{"left": 0.4, "width": 0.4, "height": tall}], "pressure": "hydrostatic"}
+    layer, laid = (
+        Simulation(it).flow.water.layer for it in (given, scene({"held": held}, water=column, reservoir=[], **CLOSED))
+    )
+    assert layer.fluid == laid.fluid == 8 * rows
+    for of in ("x", "mass", "density", "pressure"):  # the same water, laid into the pores as a column
+        assert np.array_equal(*np.sort([getattr(layer, of)[: layer.fluid], getattr(laid, of)[: laid.fluid]], axis=1))
+    assert scene(water={}, reservoir=[], **CLOSED).dry  # the check that fails: pores that are not full
+
+
+def test_ground_with_full_pores_alone_needs_a_speed_of_sound_without_gravity():
+    with pytest.raises(InputError, match=r"water\.sound_speed: is needed when there is no gravity"):
+        scene({"saturated": True}, water={}, reservoir=[], gravity=0.0, **CLOSED)
+
+
 def test_water_is_at_rest_where_pool_and_water_table_are_level():
     # A table that is level with the pool drives nothing through the pores; one that is a pool higher does.
     def fastest(table):
@@ -104,7 +126,6 @@ def test_water_is_at_rest_where_pool_and_water_table_are_level():
     ("soil", "changes", "message"),
     [
         ({"held": True}, {"water": {}, "reservoir": []}, r"soil\.held = True: is of soil with water"),
-        ({"water_table": 0.1}, {"water": {}, "reservoir": []}, r"soil\.water_table = .*: is of soil with water"),
         ({"water_table": 0.1, "saturated": True}, {}, r"soil\.water_table = 0\.1.*: cannot be with soil\.saturated"),
         ({"water_table": 0.1}, {"air": {}}, r"soil\.water_table = 0\.1.*: cannot be with air"),
         ({"held": True, "watch": [BODY]}, {}, r"soil\.watch = .*: has no displacement in soil that is held"),

@@ -56,11 +56,33 @@ row's share, 1/10, of its elastic settlement γ' H²/(2 M)."""
         ({}, {"water": {"column": [{"width": 0.3, "height": 0.3}]}}, r"water\.column"),
         ({}, {"probe": [{"x": 0.1, "y": 0.1}]}, "probe"),
         ({}, {"air": {}}, "air"),
+        ({"water_table": 0.5}, {}, r"suction\.water_table = 0\.5 m: lies over the tank \(allowed: <= 0\.4 m\)"),
     ],
 )
 def test_what_cannot_be_is_refused_by_its_key(given, changes, key):
     with pytest.raises(InputError, match=key):
         scene(SUCTION | given, **changes)
+
+
+def test_soil_that_is_held_is_not_sent_for_water_that_suction_refuses():
+    with pytest.raises(InputError) as refused:
+        scene(soil={"held": True})
+    assert [fault.problem for fault in refused.value.faults] == ["cannot be with soil.suction"]
+
+
+@pytest.mark.parametrize("look", [report, Simulation])
+@pytest.mark.parametrize("porosity", [0.0, 0.04])
+def test_pores_without_room_for_water_are_refused(look, porosity):
+    """Division by no porosity was a traceback."""
+    with pytest.raises(InputError, match=r"soil\.porosity = .*: leaves water no room \(allowed: >= 0\.05 with water\)"):
+        look(scene(soil={"porosity": porosity}))
+    look(scene(soil={"porosity": 0.05}))
+
+
+def test_check_says_of_which_gravity_permeability_is_with_suction():
+    told = "soil.permeability and alpha are those under the scene's gravity"
+    assert any(told in it for it in report(scene(gravity=98.1, water={"sound_speed": 240.0})).warnings)
+    assert not any(told in it for it in report(scene(gravity=9.8)).warnings)
 
 
 def test_check_says_how_high_water_is_drawn_and_how_soon():
