@@ -6,11 +6,11 @@ q̄, so that flow passes (its gradient across vanishes where p is given for ever
 Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, have the means, for walls that nothing passes.
 
 The particles behind the face go along with the water (`follow`).  If they stayed, water that comes in would leave a gap
-behind its first row, and the pressures about it would push it back: a gap of a share ε of a spacing takes ε of the whole
-pressure p0 off the push of the face.  So each column of them stands where it pushes the water before it as one does on
-the lattice of the start, with p0 times its breadth (`push_of`):
+behind its first row, and the pressures about it would push it back: a gap of a share ε of a spacing takes ε of the
+whole pressure p0 off the push of the face.  So each column of them stands where it pushes the water before it as one
+does on the lattice of the start, by p0 times its breadth (`push_of`):
 
-    2 p0 V_w Σ_w Σ_j V_j L_j ∇W(x_j - x_w) · n = p0 V_w/breadth of the column
+    -2 p0 V_w Σ_w Σ_j V_j L_j ∇_j W_jw · n = p0 × breadth
 
 In ground that is held that is a place beside the first row, at its distance.  Under ground that is lifted pores widen
 and the rows of water in them come closer, as V = m/(n ρ) has it: particles that drifted with the mean speed of the rows
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from continuum_sph.water.bundles import Neighbours, image
 from continuum_sph.water.rates_walls import corrected
 from continuum_sph.water.smoothing import kernel_slope, kernel_value
-from continuum_sph.water.state import VOLUME, VX, VY, P, X, Y, Layer
+from continuum_sph.water.state import VOLUME, VX, VY, Layer, P, X, Y
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.core.types import Floats
 

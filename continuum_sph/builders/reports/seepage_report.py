@@ -262,12 +262,9 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
             f"flow is steady after some {slow:.2g} s, and the run ends at {last:.2g} s; "
             f"water.sound_speed = {math.ceil(speed):g} mends it"
         )
-    if not section.held and lifting > (critical := critical_gradient(scene)):
-        most = critical / lifting
-        out.warn(
-            f"flow comes out of the ground with a gradient of about {lifting:.2g}, and {critical:.2g} lifts it: it "
-            f"boils, and the run may become unstable; {most:.2g} of the difference of heads would not lift it"
-        )
+    if not section.held and lifting > 0.0:
+        critical = critical_gradient(scene)
+        out.row("gradient of the flow out of the ground", lifting, "", f"about; more than {critical:.2g} lifts it")
     if not section.held and steep > 0.0 and any(it.side == "lid" for it in scene.face):
         out.warn("the lid stops water and not soil: ground that flow lifts passes through it")
 
