@@ -55,12 +55,20 @@ class PoreFlow(Flow):
         self.borne = np.zeros((self.skeleton.count, 2))
         self.heat = np.zeros(fluid + self.skeleton.count)
 
-    def begin(self, step: float) -> float:
-        """Begin a step as a flow of water alone does; particles behind open faces are moved with it."""
-        layer, near = self.layer, self.near(self.law.smoothing.kind)
+    def start(self) -> None:
+        """Rates of the initial state, and how open faces push the water there."""
+        super().start()
+        near = self.near(self.law.smoothing.kind)
         for face in self.faces:
-            follow(face.rows, near, layer.x, layer.v, layer.acceleration, *face.normal, step)
-        return super().begin(step)
+            face.arrange(near, self.layer, self.gradients.matrix, self.law.spacing)
+
+    def begin(self, step: float) -> float:
+        """Begin a step as a flow of water alone does; particles behind open faces go along with it."""
+        ratio = super().begin(step)
+        layer, near, matrix = self.layer, self.near(self.law.smoothing.kind), self.gradients.matrix
+        for face in self.faces:
+            follow(face.columns, face.whole, face.slope, near, layer.x, layer.record, matrix, *face.normal)
+        return ratio
 
     def evaluate(self, step: float, ratio: float) -> None:
         """Evaluate rates and forces of the mixture, as `Flow.evaluate` does; forces of the water on the soil beside."""
@@ -174,6 +182,7 @@ class PoreFlow(Flow):
             "record": self.layer.record.copy(),
             "home": self.home.copy(),
             "overlap": self.overlap.pairs.state(),
+            **({"matrix": self.layer.matrix.copy()} if self.faces else {}),
         }
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -181,4 +190,6 @@ class PoreFlow(Flow):
         super().restore(state)
         self.pores[:], self.heat[:], self.borne[:] = state["pores"], state["heat"], state["borne"]
         self.layer.record[:], self.home[:] = state["record"], state["home"]
+        if "matrix" in state:
+            self.layer.matrix[:] = state["matrix"]
         self.overlap.restore(state["overlap"], self.layer.x[: self.layer.fluid], self.skeleton.x)

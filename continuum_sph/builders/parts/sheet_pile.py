@@ -7,8 +7,15 @@ tip, z = s, the head has a root: in z = y + ix, y the depth, x the distance from
 
 (the first is that of ground without a base, with h/π s in place of 1).  i_E is the sum of the factors of these two that
 least squares give the particles beside the pile, over what its thickness adds (`sheet_flow.thickness_at_exit`).  The
-soil there has lost its weight at i = i_c.  With fewer than LEAST rows beside the sheet there are fewer than two rows
-between the surface, where kernels round off the bend of the head, and the tip: no number then.
+soil there has lost its weight at i = i_c.
+
+Open water and the two uppermost rows of bare ground have heads that go up and down from row to row, at rest too, by up
+to 0.2 spacings: the row under a free surface lacks partners.  So the head of open water is its mean by the weight
+1 - cos(2πz/4), z the height in spacings above the blurred row: a zig-zag falls out of a mean over 4 rows with it.  Bare
+ground is fitted below its second row.
+
+With fewer than LEAST rows beside the sheet, LEAST_BARE of bare ground, there are fewer than two rows between the
+surface and the tip: no number then.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,10 +36,13 @@ NAME = "exit gradient ()"
 """Column of series.csv in a scene with a pile."""
 LEAST = 4.0
 """Spacings that a sheet must reach into the ground for an exit gradient."""
+LEAST_BARE = 5.0
+"""The same where no water stands on the ground."""
 NEAR_TIP = 0.75  # of its depth: how deep the fit goes
 WIDE = 2.0  # spacings beside the pile, whose particles are fitted
-OPEN = 4.0  # spacings beside it and above the ground, whose water gives h0
+OPEN = 4.0  # spacings beside it, and above the blurred one over the ground, whose water gives h0
 BLURRED = 1.0  # spacings about the surface of the ground, in which kernels round off the bend of the head
+BARE = 2.0  # spacings below the surface of bare ground, in which heads zig-zag
 
 
 def sheet_pile(section: SheetPileSection, spacing: float) -> Pile:
@@ -60,7 +70,7 @@ class ExitGradientPart(Part):
         """The column of the exit gradient i_E at the sheet pile.
 
         exit gradient () : hydraulic gradient upwards where water leaves the ground beside the pile; nan where fewer
-            than four rows of particles lie beside it
+            than four rows of particles lie beside it, five where no water stands on the ground
         """
         return {NAME: exit_gradient(self.pile, self.flow, self.weight, self.given(self.flow.time))}
 
@@ -74,9 +84,18 @@ def steepness(z: NDArray[np.complex128], head: Floats, buried: float) -> float:
     return float(np.linalg.lstsq(terms, head)[0].sum())
 
 
-def resolved(buried: float, spacing: float) -> bool:
-    """Whether a sheet that is ``buried`` so deep (m) has rows enough of a ``spacing`` (m) beside it."""
-    return buried > (LEAST - 0.5) * spacing
+def resolved(buried: float, spacing: float, *, bare: bool = False) -> bool:
+    """Whether a sheet that is ``buried`` so deep (m) has rows enough of a ``spacing`` (m) beside it, in ``bare`` ground
+    or under water."""
+    return buried > ((LEAST_BARE if bare else LEAST) - 0.5) * spacing
+
+
+def open_head(above: Floats, head: Floats) -> float | None:
+    """Mean ``head`` (n,) m of open water ``above`` (n,) the blurred row over the ground, in spacings, without zig-zags;
+    None where there is none within OPEN."""
+    weight = np.where((above > 0.0) & (above < OPEN), 1.0 - np.cos(2.0 * np.pi * above / OPEN), 0.0)
+    total = float(weight.sum())
+    return float(weight @ head) / total if total > 0.0 else None
 
 
 def beside(
@@ -98,10 +117,15 @@ def beside(
         depth, buried = top - water[:, 1], top - pile.tip
         if not resolved(buried, spacing):
             continue
-        near = (away > 0.0) & (away < WIDE) & (depth > BLURRED * spacing) & (depth < NEAR_TIP * buried)
-        over = (away > 0.0) & (away < OPEN) & (depth < -BLURRED * spacing) & (depth > -OPEN * spacing)
-        found_above = float(head[over].mean()) if over.any() else top
-        level = found_above if known is None else known
+        beside_it = (away > 0.0) & (away < OPEN)
+        level, blurred = known, BLURRED
+        if level is None:
+            level = open_head(-depth[beside_it] / spacing - BLURRED, head[beside_it])
+        if level is None:  # bare ground
+            level, blurred = top, BARE
+            if not resolved(buried, spacing, bare=True):
+                return float("nan")
+        near = (away > 0.0) & (away < WIDE) & (depth > blurred * spacing) & (depth < NEAR_TIP * buried)
         steep = steepness(depth[near] + 1j * spacing * away[near], head[near] - level, buried)
         found.append(steep / thickness_at_exit(min(1.0, buried / top), top / spacing))
     return float(np.fmax.reduce(found))

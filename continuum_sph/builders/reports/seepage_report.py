@@ -8,7 +8,7 @@ import numpy as np
 from continuum_sph.builders.parts.air import air_report, dry_pores
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, water_counts
-from continuum_sph.builders.parts.sheet_pile import LEAST, OPEN, given_heads, ground_at, resolved
+from continuum_sph.builders.parts.sheet_pile import LEAST, LEAST_BARE, OPEN, given_heads, ground_at, resolved
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.water import wall_layers, water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_watched
@@ -34,9 +34,6 @@ REACH = 1.05  # h over the distance of water's particles in pores: with less a f
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
 STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level with less than `RATIO` spacings
 STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
-BARE, COVERED = 0.2, 0.11
-"""By how much an exit gradient is low where flow leaves bare ground, and ground under four rows of water: s/T = 0.5 in
-10 rows of ground that is held, against finite differences."""
 BROAD, APART = 6.0, 3.0  # spacings of open water in a strip that keeps its level, and from it to the ground
 PIECES = 100  # of a run, to add up what passes a face whose head rises
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
@@ -155,19 +152,15 @@ def pile_report(scene: Scene, out: Report) -> None:
         out.row("rows of ground beside it", 0.0)
         out.warn("the pile does not reach into the ground at the start: exit gradient () will be nan; lower pile.tip")
         return
-    out.row("rows of ground beside it", buried / spacing, "", f"at least {LEAST:g} for an exit gradient")
+    side = bare_exit(scene)
+    least, bare = (LEAST_BARE, f" where no water stands on the {side}") if side else (LEAST, "")
+    out.row("rows of ground beside it", buried / spacing, "", f"at least {least:g} for an exit gradient{bare}")
     out.row("rows of ground below it", tip / spacing, "", f"at least {LEAST_BELOW:g}")
-    if not resolved(buried, spacing):
+    if not resolved(buried, spacing, bare=bool(side)):
         out.warn(
             f"the pile is {buried / spacing:.2g} rows deep in the ground: exit gradient () will be nan, as it is fit "
-            "to what lies between the first row and the tip; "
-            f"numerics.spacing = {buried / LEAST:.2g} mends it"
-        )
-    elif side := bare_exit(scene):
-        out.warn(
-            f"no water stands on the ground on the {side} of the pile, where flow comes out: exit gradient () is too "
-            f"low there, by {100 * BARE:.0f} % with 10 rows of ground over its base ({100 * COVERED:.0f} % under four "
-            "rows of water); let water stand on it, or give its head by a [[face]] of the lid"
+            f"to what lies between the first row and the tip{', the second' + bare if side else ''}; "
+            f"numerics.spacing = {buried / least:.2g} mends it"
         )
     if tip == 0.0:
         out.warn(
@@ -269,12 +262,9 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
             f"flow is steady after some {slow:.2g} s, and the run ends at {last:.2g} s; "
             f"water.sound_speed = {math.ceil(speed):g} mends it"
         )
-    if not section.held and lifting > (critical := critical_gradient(scene)):
-        most = critical / lifting
-        out.warn(
-            f"flow comes out of the ground with a gradient of about {lifting:.2g}, and {critical:.2g} lifts it: it "
-            f"boils, and the run may become unstable; {most:.2g} of the difference of heads would not lift it"
-        )
+    if not section.held and lifting > 0.0:
+        critical = critical_gradient(scene)
+        out.row("gradient of the flow out of the ground", lifting, "", f"about; more than {critical:.2g} lifts it")
     if not section.held and steep > 0.0 and any(it.side == "lid" for it in scene.face):
         out.warn("the lid stops water and not soil: ground that flow lifts passes through it")
 

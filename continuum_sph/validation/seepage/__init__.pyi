@@ -1,5 +1,6 @@
 # The public names of continuum_sph.validation.seepage: its topics.
 from . import air as air
+from . import bare_exit as bare_exit
 from . import consolidation as consolidation
 from . import dam as dam
 from . import heave as heave
@@ -15,6 +16,7 @@ from . import wet_slopes as wet_slopes
 
 __all__ = [
     "air",
+    "bare_exit",
     "consolidation",
     "dam",
     "heave",

@@ -155,3 +155,47 @@ def boiling_row() -> Measured:
     """Gradient over i_c at which upward flow takes the soil's weight."""
     found, _, _ = boiling()
     return Measured.absolute(1.0, found)
+
+
+LIFTS = (1.05, 1.1, 1.2)
+"""Gradients of the head at the base, over the critical one."""
+PASSES = 0.5  # spacings of water through the face, after which a run of a scene ends
+
+
+@functools.cache
+def lift(part: float, column: Permeameter = BOILING) -> tuple[float, float, float]:
+    """(Impulse of the face, less the weight, over (p0 - weight) t;  mean upward speed of the soil, m/s, when half of
+    the water has passed that passes in a run, and at its end) under a head of ``part`` i_c; at the start pore pressures
+    bear the soil, and nothing moves."""
+    both = column.build(part * column.critical, column.critical)
+    layer, ground, face = both.water.layer, both.ground, both.water.faces[0]
+    assert isinstance(ground, SoilFlow)
+    water, soil, n, soils = layer.mass[: layer.fluid], ground.soil, layer.fluid, ground.soil.soil
+    width, grains, spacing = COLUMNS * column.height / column.rows, soil.mass[:soils], column.height / column.rows
+    weight = GRAVITY * float(water.sum() + grains.sum()) / width
+    taken, halfway, passed = 0.0, 0.0, 0.0
+    while passed < PASSES * spacing:
+        both.advance()
+        # What is left without weight and water is that of the floor: forces within the soil cancel.
+        held = grains * (soil.acceleration[:, 1] + GRAVITY) - both.water.skeleton.force[:, 1]
+        taken += both.next_step * float(held.sum()) / width
+        speed = float(grains @ soil.v[:soils, 1] / grains.sum())
+        halfway = speed if passed < 0.5 * PASSES * spacing else halfway
+        passed = float((layer.x[face.rows, 1] - both.water.home[face.rows, 1]).mean())
+    gained = float(water @ layer.v[:n, 1] + grains @ soil.v[:soils, 1]) / width - taken
+    return gained / ((column.base(part * column.critical) - weight) * both.time), halfway, speed
+
+
+@VALIDATIONS.row(
+    "continuum.ground_lifted_by_a_face",
+    source="Newton's second law: soil and water gain (p0 - weight) t from a base of the pressure p0, which bears them "
+    "alone; i of the head 1.05, 1.1, 1.2 i_c",
+    because="a quarter of a spacing of water, which no particles stand for, lies before the face in the mean of a run, "
+    "and takes ρ g i of its pressure a metre: 1.2/0.2 · 0.25/20 of what lifts, of the largest head",
+    tolerance=LIFTS[-1] / (LIFTS[-1] - 1.0) * 0.5 * PASSES / BOILING.rows,
+    slow=True,
+)
+def lift_row() -> Measured:
+    """Momentum of soil and water, less what the floor has given the soil, over that due to the head, when water has
+    passed the face by half a spacing."""
+    return Measured.absolute([1.0] * len(LIFTS), [lift(part)[0] for part in LIFTS])

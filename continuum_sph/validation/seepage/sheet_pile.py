@@ -175,8 +175,8 @@ class SheetPile:
         discharge = float(through / area) * self.reach / k
         column = out & (x[:, 0] < right + spacing) & (x[:, 1] > 1.0 - self.share + 3.0 * spacing)
         off = np.abs(head[column] - self.head(1.0 - x[column, 1]))
-        # Heads over water at rest, so the surface takes the place of heights.
-        steep = beside(pile, x[out], 1.0 + head[out], both.water.skeleton.x)
+        # Heads over water at rest, so the surface takes the place of heights, and is the head of the face there.
+        steep = beside(pile, x[out], 1.0 + head[out], both.water.skeleton.x, (1.0, 1.0))
         return discharge, steep, float(off.max()), both
 
 

@@ -1,5 +1,6 @@
 """What `check` says of wet ground before it runs: what it costs, what lifts it, exit gradients that come out low."""
 
+import numpy as np
 import pytest
 
 from continuum_sph.builders.report import report
@@ -64,28 +65,34 @@ def test_the_time_of_a_run_counts_the_open_water_of_a_pond():
     assert rows(pond)["memory"] > 1.5 * rows(ground)["memory"]
 
 
-def lifts(given):
-    return [text for text in report(given).warnings if "lifts it" in text]
+def out_of(given):
+    """Gradient of the flow out of the ground, by `check`; None where none is said."""
+    return rows(given).get("gradient of the flow out of the ground")
 
 
-def test_a_face_that_lifts_ground_is_doubted_and_one_that_draws_it_down_or_presses_held_ground_is_not():
-    # 1.59 - 0.6 = 0.99 of 0.4 m over the water at 0.6 m: 0.996 m
+def test_check_says_how_steep_the_flow_is_that_a_face_drives_out_of_ground_that_may_move():
     def floor(head, **soil):
-        return lifts(scene(soil=soil, face=[{"side": "floor", "head": head}]))
+        return out_of(scene(soil=soil, face=[{"side": "floor", "head": head}]))
 
-    assert "about 1.1, and 0.99 lifts it" in floor(1.05)[0]
-    assert not floor(0.99)
-    assert floor(1.0)
-    assert not floor(0.1)  # as steep, downwards
-    assert not floor(1.05, held=True)
+    # from 0.6 m of water through 0.4 m of ground
+    assert floor(1.05) == pytest.approx(0.45 / 0.4, rel=1e-12)
+    assert floor(0.99) == pytest.approx(0.39 / 0.4, rel=1e-12)
+    assert floor(0.1) is None  # as steep, downwards
+    assert floor(1.05, held=True) is None
+    texts = [
+        row.note for group in report(scene(face=[{"side": "floor", "head": 1.05}])).groups.values() for row in group
+    ]
+    assert "about; more than 0.99 lifts it" in texts  # 1.59 - 0.6
 
 
-def test_flow_between_two_sides_lifts_nothing_and_flow_to_the_lid_does():
+def test_flow_between_two_sides_leaves_no_ground_and_flow_to_the_lid_does():
     closed = {"tank": {"width": 0.4, "height": 0.4}, "depth": 0.0}
     body = {"body": [{"outline": [[0, 0], [0.4, 0], [0.4, 0.4], [0, 0.4]]}]}
     left = {"side": "left", "head": 1.0}
-    assert not lifts(scene(soil=body, face=[left, {"side": "right", "head": 0.4}], **closed))
-    assert lifts(scene(soil=body, face=[{"side": "floor", "head": 1.0}, {"side": "lid", "head": 0.4}], **closed))
+    assert out_of(scene(soil=body, face=[left, {"side": "right", "head": 0.4}], **closed)) is None
+    lid = scene(soil=body, face=[{"side": "floor", "head": 1.0}, {"side": "lid", "head": 0.4}], **closed)
+    assert out_of(lid) == pytest.approx(0.6 / 0.35, rel=1e-12)  # between the outermost rows
+    assert any("ground that flow lifts passes through it" in text for text in report(lid).warnings)
 
 
 def piled(left, right, **changes):
@@ -95,20 +102,27 @@ def piled(left, right, **changes):
     return scene(**{"soil": {"held": True}, "water": water, "pile": {"x": 0.475, "tip": 0.15}} | changes)
 
 
-def test_an_exit_through_bare_ground_beside_a_pile_is_doubted():
-    def said(given):
-        return [text for text in report(given).warnings if "exit gradient () is too low" in text]
+def test_an_exit_through_bare_ground_beside_a_pile_needs_five_rows():
+    """Four under water: its second row, too, has no head to fit."""
 
-    assert "on the right of the pile" in said(piled(0.6, 0.4))[0]
-    assert "by 20 % with 10 rows" in said(piled(0.6, 0.4))[0]
+    def said(given):
+        return [text for text in report(given).warnings if "exit gradient () will be nan" in text]
+
+    bare = piled(0.6, 0.4, pile={"x": 0.475, "tip": 0.2})  # four rows
+    assert "the second where no water stands on the right; numerics.spacing = 0.04 mends it" in said(bare)[0]
+    assert bare_exit(bare) == "right"
     assert bare_exit(piled(0.4, 0.6)) == "left"
     for covered in (piled(0.7, 0.5), piled(0.4, 0.4)):
-        assert not said(covered)
+        assert not bare_exit(covered)
     rising = {"left": 0.6, "right": 1.0, "bottom": 0.4, "level": 0.5}
-    assert not said(piled(0.6, 0.4, reservoir=[rising]))
+    assert not bare_exit(piled(0.6, 0.4, reservoir=[rising]))
     full = {"tank": {"width": 1.0, "height": 0.4}, "depth": 0.0, "water": {"sound_speed": 60.0}}
     faces = [{"side": "lid", "end": 0.45, "head": 0.6}, {"side": "lid", "start": 0.5, "head": 0.4}]
-    assert not said(piled(0.0, 0.0, face=faces, **full))
+    assert not bare_exit(piled(0.0, 0.0, face=faces, **full))
+    assert not said(piled(0.6, 0.4))
+    assert not said(piled(0.7, 0.5, pile={"x": 0.475, "tip": 0.2}))
+    for given, there in ((bare, False), (piled(0.6, 0.4), True), (piled(0.7, 0.5, pile=bare.pile), True)):
+        assert np.isfinite(Simulation(given).series()["exit gradient ()"]) == there
 
 
 def test_the_sheet_is_drawn_in_the_column_that_stands_for_it():

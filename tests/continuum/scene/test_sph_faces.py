@@ -57,8 +57,7 @@ def steady(given, seconds=0.3):
 def test_flow_between_two_sides_is_darcys(one, other, along, across):
     """A linear head is exact for the faces and for corrected gradients.  Each face is known to a twentieth of a
     spacing, by so much of a row's fall the heads beside it zig-zag: two of them are 1.25 % of eight rows.  It lasts, as
-    particles behind the faces drift with the water: with its velocity at the start of a step flow falls by 3 % a
-    second, with none by 18 %."""
+    particles behind the faces go along with the water: where they stay it falls by 18 % a second."""
     exact = K * 0.2 / along * across
     _, row = steady(scene(pair(one, other, 0.2)), 0.8)
     assert row["high flow in (m2/s)"] == pytest.approx(exact, rel=0.0125)

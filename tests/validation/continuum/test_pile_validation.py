@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from continuum_sph.builders.parts import sheet_pile
 from continuum_sph.seepage import sheet_flow
+from continuum_sph.validation.seepage import bare_exit
 from continuum_sph.validation.seepage.heave import (
     BOUNDS,
     GROUNDS,
@@ -170,3 +172,21 @@ def test_the_exit_gradient_of_a_pile_two_rows_deeper_is_refused():  # the twin t
     deeper = replace(HALF_HEAD, share=HALF_HEAD.share + 2.0 / HALF_HEAD.rows)
     exact = (SheetPile(given.share, given.rows, given.reach).exit_gradient for given in (deeper, HALF_HEAD))
     assert abs(rising.__wrapped__(deeper) * next(exact) / next(exact) - 1.0) > row.tolerance
+
+
+@pytest.mark.slow
+def test_the_second_row_of_bare_ground_has_no_head_to_fit(monkeypatch):  # the twin that must fail
+    monkeypatch.setattr(sheet_pile, "BARE", sheet_pile.BLURRED)
+    found = [bare_exit.exit_over_exact.__wrapped__(20, share) for share in (0.5, 0.75)]
+    assert 1.0 - min(found) > ROWS["continuum.exit_through_bare_ground"].tolerance
+
+
+@pytest.mark.parametrize("first", [0.1, 0.25, 0.5, 0.9])
+def test_a_zig_zag_falls_out_of_the_head_of_open_water(first):
+    # exact: a wave of two rows is orthogonal to the weight over four, wherever the rows lie
+    above = first + np.arange(-3.0, 9.0)
+    zig_zag = np.cos(np.pi * np.arange(12))
+    assert sheet_pile.open_head(above, 2.0 + 0.2 * zig_zag) == pytest.approx(2.0, abs=1e-14)
+    assert sheet_pile.open_head(above[:3], zig_zag[:3]) is None
+    inside = (above > 0.0) & (above < 3.0)  # the twin that must fail: a mean of three rows
+    assert abs(0.2 * zig_zag[inside].mean()) > 0.05
