@@ -143,12 +143,14 @@ def test_a_run_that_has_not_begun_its_steps_is_stopped_where_a_shell_has_ctrl_c_
     try:
         with ThreadPoolExecutor(1) as pool:
             ended = pool.submit(process.run)
-            awaited(lambda: begun(Path("runs")) or ended.done(), PATIENCE)
-            process.stop()
-            assert ended.result(PATIENCE)[0] == INTERRUPTED
+            try:
+                awaited(lambda: begun(Path("runs")) or ended.done(), PATIENCE)
+                process.stop()
+                assert ended.result(PATIENCE)[0] == INTERRUPTED
+            finally:
+                go.touch()  # what still waits ends
     finally:
         signal.signal(signal.SIGINT, before)
-        go.touch()  # what would still wait ends
 
 
 def test_a_run_that_another_process_began_unseen_is_waited_for_and_gone_on_with(place, monkeypatch):
