@@ -3,11 +3,13 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from matplotlib.ticker import LogLocator
+
 from porescale.common.evidence import files
 from porescale.common.studies.front import Front, FrontPoint, read_front
 from tests.architecture.sources import ROOT
 
-DECADES = (0.1, 1.0, 10.0, 100.0)
+DECADES = (1.0, 10.0, 100.0)
 """Core-seconds of steps up to which the best point is looked for."""
 
 
@@ -56,8 +58,8 @@ def picture(found: Mapping[str, Front]) -> bytes:
     axes.set_yscale("log")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter("")
-    axes.yaxis.set_minor_formatter("{x:g}")
+        axis.set_minor_locator(LogLocator(subs=(2, 5)))
+        axis.set_minor_formatter("{x:g}")
     axes.grid(True, color="#d8d8d8", lw=0.6)
     axes.set_xlabel("core-seconds of steps (PIV: of a pair)")
     axes.set_ylabel("error, %")
@@ -84,4 +86,4 @@ def _bought(front: Front) -> str:
     first, last = front.points[0], front.points[-1]
     if first is last:
         return "one point is both"
-    return f"error / {first.error / last.error:.2g}, core-seconds × {last.core_seconds / first.core_seconds:.2g}"
+    return f"error / {first.error / last.error:.3g}, core-seconds × {last.core_seconds / first.core_seconds:.2g}"
