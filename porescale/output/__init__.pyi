@@ -13,11 +13,14 @@ from .case_bodies import frame as frame
 from .case_bodies import keep as keep
 from .case_bodies import pixels as pixels
 from .case_bodies import shot as shot
+from .case_trade import Tried as Tried
+from .case_trade import trade as trade
 
 __all__ = [
     "LARGEST",
     "PLATE",
     "Shot",
+    "Tried",
     "by_piece",
     "conclude",
     "draw",
@@ -29,4 +32,5 @@ __all__ = [
     "pixels",
     "shot",
     "stage",
+    "trade",
 ]

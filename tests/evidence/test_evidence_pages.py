@@ -3,6 +3,7 @@
 import io
 import json
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.common.evidence import convergence_files, files, overhead, validation_files
 from porescale.common.evidence.convergence import Row
 from tests.architecture.sources import ROOT
-from tests.evidence import pictures
+from tests.evidence import fronts, pictures
 
 WRITER = runpy.run_path(str(ROOT / ".ci" / "tables"))
 EVIDENCE = WRITER["EVIDENCE"]
@@ -150,3 +151,16 @@ def test_verify_keeps_rows_that_others_ran(tmp_path: Path) -> None:
     assert "| r.b **fails** |" in (tmp_path / "verify.md").read_text(encoding="utf-8")
     assert json.loads((tmp_path / "verify.json").read_text(encoding="utf-8"))[1]["error"] is None
     assert described((tmp_path / "r.png").read_bytes()) == validation_files.digest([first, fails])
+
+
+def test_the_page_of_fronts_is_of_the_fronts_that_cases_keep() -> None:
+    found, page = fronts.fronts(), WRITER["TRADE_PAGE"]
+    again = "write it again with .ci/tables trade"
+    assert list(WRITER["inside"](page.read_text(encoding="utf-8"), "fronts"))[1:] == fronts.lines(found), again
+    kept = described(page.with_suffix(".png").read_bytes())
+    assert kept == files.digest(fronts.drawn(found)), again
+    # The check that must fail: a front that lost a point.
+    name, front = next(iter(found.items()))
+    fewer = found | {name: replace(front, points=front.points[:-1])}
+    assert fronts.lines(fewer) != fronts.lines(found)
+    assert kept != files.digest(fronts.drawn(fewer))

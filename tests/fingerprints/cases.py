@@ -89,13 +89,18 @@ NO_SUBJECT = {
     "column_collapse/lambda.py": "reads a sweep of the scene beside it",
     "column_collapse/levels.py": "reads sweeps of the scene beside it",
     "column_collapse/trade.toml": "of a study, not a scene",
+    "consolidation/trade.toml": "of a study, not a scene",
     "dry_levee/safety.py": "reads a run of the scene beside it",
     "loose_and_dense_collapse/compare.py": "reads a sweep of the scene beside it",
     "micro_to_macro/compared.py": "imported by the script beside it",
     "micro_to_macro/falls.py": "imported by the script beside it",
     "micro_to_macro/flows.py": "imported by the script beside it",
     "micro_to_macro/material.toml": "read by ground.toml",
+    "micro_to_macro/trade.toml": "of a study, not a scene",
     "own_law/laws.py": "named by the scene beside it",
+    "permeameter/trade.toml": "of a study, not a scene",
+    "piv_synthetic/windows.py": "a study of the pairs of the script beside it",
+    "rectangular_dam/trade.toml": "of a study, not a scene",
 }
 """Files of cases that have no fingerprint of their own."""
 

@@ -28,6 +28,8 @@ Features = Mapping[str, Callable[[Path, float | None], NDArray[Any]]]
 """What a package makes of a run folder at a time (None: the last snapshot), by name."""
 Answer = tuple[NDArray[Any] | None, NDArray[Any]]
 """Places, where there are any, and values."""
+Costs = tuple[float, float, float, int, float, float, float]
+"""Core-seconds, seconds, peak bytes, steps, simulated time, core-seconds besides, pace of a point: means of repeats."""
 
 
 @dataclass(frozen=True)
@@ -130,11 +132,22 @@ class Errors:
             said = f"{done} of {len(ends)} repeats finished; {bad.point.name}: {bad.problem}"
             problem = said if len(ends) > 1 else bad.problem
             return Traded(knob, label, point, bad.outcome, nothing, math.inf, 0.0, *costs(ends), problem=problem)
+        names = [quantity.name for quantity in self.plan.quantity]
         table = np.array([[self.error(ended, k, it) for it in self.plan.quantity] for k, ended in enumerate(ends)])
-        errors = {quantity.name: rms(table[:, k]) for k, quantity in enumerate(self.plan.quantity)}
-        each = [rms(row) for row in table]
-        made = Traded(knob, label, point, FINISHED, errors, rms(each), 0.0, *costs(ends), each=tuple(each))
-        return replace(made, scatter=made.sample.deviation) if len(made.sample.values) > 1 else made
+        return of_errors((knob, label, point), names, table, costs(ends))
+
+
+def of_errors(named: tuple[str, str, Point], names: Sequence[str], table: NDArray[Any], spent: Costs) -> Traded:
+    """A point of which every repeat finished.
+
+    named : knob, label and point;  names : of the quantities;  table (repeats, quantities) : errors, shares;
+    spent : as `costs` has it.
+    """
+    errors = {name: rms(table[:, k]) for k, name in enumerate(names)}
+    each = tuple(rms(row) for row in table)
+    knob, label, point = named
+    made = Traded(knob, label, point, FINISHED, errors, rms(each), 0.0, *spent, each=each)
+    return replace(made, scatter=made.sample.deviation) if len(made.sample.values) > 1 else made
 
 
 def distance(values: NDArray[Any], truth: NDArray[Any], scale: float) -> float:
@@ -150,7 +163,7 @@ def rms(values: Any) -> float:
     return float(np.sqrt(np.mean(np.square(np.asarray(values, float)))))
 
 
-def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int, float, float, float]:
+def costs(ends: Sequence[Ended]) -> Costs:
     """Core-seconds, seconds, bytes, steps, simulated time, core-seconds besides, pace: means over runs that have them;
     seconds stand in for core-seconds, all steps for the first ones.  Where some have their pace, costs are those of
     these runs: a pace goes with the core-seconds of its own run, since machines have better and worse hours.

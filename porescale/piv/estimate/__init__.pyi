@@ -1,5 +1,6 @@
 # The public names of porescale.piv.estimate: displacements between two pictures.
 from .measure import Settings as Settings
+from .measure import Vectors as Vectors
 from .measure import measure as measure
 
-__all__ = ["Settings", "measure"]
+__all__ = ["Settings", "Vectors", "measure"]

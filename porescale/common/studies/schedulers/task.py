@@ -17,8 +17,9 @@ from porescale.common.record.read_card import read_card
 from porescale.common.studies.schedulers.cores import pin
 
 OWN_GROUP = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
-STOP: int = getattr(signal, "CTRL_BREAK_EVENT", signal.SIGINT)
-"""What asks a process to save its state and end; Windows sends such things to groups of processes alone."""
+STOP: int = getattr(signal, "CTRL_BREAK_EVENT", signal.SIGTERM)
+"""What asks a process to save its state and end; Windows sends such things to groups of processes alone.  Not SIGINT,
+which shells have ignored in the background: a run that has not begun its steps would go on to its end."""
 INTERRUPTED = 130
 LOOK = 0.5
 """Seconds between looks at a run folder that another run holds."""
@@ -105,8 +106,9 @@ class Process:
                 errors="replace", creationflags=OWN_GROUP,
             )  # fmt: skip
             pin(self._process.pid, self.cores)
-        said = self._process.communicate()[1]
-        return self._process.returncode, said
+        said, code = self._process.communicate()[1], self._process.returncode
+        before_steps = self._stopped.is_set() and code == -signal.SIGTERM  # when nothing was to be saved
+        return INTERRUPTED if before_steps else code, said
 
     def stop(self) -> None:
         """Let it save its state and end, or not begin; returns at once."""

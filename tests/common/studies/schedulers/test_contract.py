@@ -134,6 +134,25 @@ def test_a_held_run_folder_is_waited_for_until_the_campaign_is_stopped(place, mo
     assert begun(Path("runs")) == []
 
 
+def test_a_run_that_has_not_begun_its_steps_is_stopped_where_a_shell_has_ctrl_c_ignored(place):
+    # As in `nohup porescale study trade SCENE &`: what it starts would go on to its end.
+    go = Path("runs/go")
+    go.unlink()
+    process = Process(task("a", "toy.packs=true"))
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with ThreadPoolExecutor(1) as pool:
+            ended = pool.submit(process.run)
+            try:
+                awaited(lambda: begun(Path("runs")) or ended.done(), PATIENCE)
+                process.stop()
+                assert ended.result(PATIENCE)[0] == INTERRUPTED
+            finally:
+                go.touch()  # what still waits ends
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def test_a_run_that_another_process_began_unseen_is_waited_for_and_gone_on_with(place, monkeypatch):
     folder, go = Path("runs/a"), Path("runs/go")
     go.unlink()
