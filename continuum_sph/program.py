@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,6 +38,13 @@ def build(scene: Scene) -> Simulation:
     model = Simulation(scene)
     model.building = began, moment()
     return model
+
+
+def rehearsed(scene: Scene) -> AbstractContextManager[None]:
+    """Within this, a second process compiles kernels of the scene."""
+    from continuum_sph.builders.rehearsal import rehearsed as rehearsed_scene
+
+    return rehearsed_scene(scene)
 
 
 def drive(model: Simulation, folder: Path, scene: Scene, **options: Any) -> Outcome:
@@ -112,6 +120,7 @@ PROGRAM = Program(
     version=VERSION,
     scene=scene_type,
     build=build,
+    rehearsed=rehearsed,
     drive=drive,
     report=report,
     show=show,

@@ -5,15 +5,14 @@ and settles its packing, this compiles what the run comes to last.  A few steps 
 is written but kernels.  A scene that takes much memory, or names a user's own functions, is not rehearsed.
 """
 
-from contextlib import AbstractContextManager, nullcontext
-from pathlib import Path
+from contextlib import AbstractContextManager
 from typing import Any
 
 from porescale.builders.cost import memory
 from porescale.builders.derive import derive
 from porescale.builders.scene import Scene
-from porescale.common.compiled.ahead import ahead, serve
-from porescale.common.compiled.jit import set_threads, threads
+from porescale.common.api import run_scene
+from porescale.common.compiled.ahead import serve
 
 LARGEST = 2.0**28
 """Bytes of the largest scene: it is held twice while its run begins."""
@@ -23,19 +22,12 @@ STEPS = (1, 1, 2)
 
 def rehearsed(scene: Scene) -> AbstractContextManager[None]:
     """Within this, kernels of ``scene`` are compiled by a second process, too, if there are cores for it."""
-    from porescale.common.schema.own import on_card
-    from porescale.common.schema.sections import scene_as_dict
 
-    if threads() < 2:
-        return nullcontext()
+    def fits() -> bool:
+        """Whether the scene runs on the processor and is small."""
+        return not (scene.run and scene.run.device != "cpu") and memory(scene, derive(scene)) <= LARGEST
 
-    def given() -> dict[str, Any] | None:
-        """What the second process reads; None where it is not to be started."""
-        if on_card(scene) or (scene.run and scene.run.device != "cpu") or memory(scene, derive(scene)) > LARGEST:
-            return None
-        return {"scene": scene_as_dict(scene), "folder": str(scene.source.folder or ""), "threads": threads()}
-
-    return ahead(__name__, given)
+    return run_scene.rehearsed(__name__, scene, fits)
 
 
 def rehearse(given: dict[str, Any]) -> None:
@@ -43,11 +35,8 @@ def rehearse(given: dict[str, Any]) -> None:
     from porescale.builders.build import system_of
     from porescale.builders.kinds import add_parts
     from porescale.builders.simulation import Simulation
-    from porescale.common.schema.sections import validate
 
-    set_threads(given["threads"])
-    scene = validate(Scene, given["scene"], folder=Path(given["folder"]) if given["folder"] else None)
-    system = system_of(scene, hasty=True)
+    system = system_of(run_scene.scene_given(given, Scene), hasty=True)
     model = Simulation(system, add_parts(system))
     for steps in STEPS:
         model.advance(steps)

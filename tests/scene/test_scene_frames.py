@@ -248,7 +248,7 @@ def test_a_polygon_behind_a_wall_is_refused():
 
 
 def test_lines_and_polygons_come_back_from_the_file(tmp_path):
-    from porescale.common.record.vtkhdf import frames_of, join, read_frame, write_frame
+    from porescale.common.record.vtkhdf import Readers, frames_of, join, write_frame
 
     simulation = build(framed(polygon=[{**SQUARE, "at": [[4e-3, 2e-3]]}], container=[FLOOR]))
     made = simulation.snapshot().clouds["frames"]
@@ -257,7 +257,8 @@ def test_lines_and_polygons_come_back_from_the_file(tmp_path):
         write_frame(path, "frames", made, k, float(k))
     join(paths[2], [frames_of(path)[0] for path in paths[:2]])
     for k in range(2):
-        back = read_frame(paths[2], k)[2]
+        with Readers() as readers:
+            back = readers.of("frames", paths[2]).frame(k)
         np.testing.assert_array_equal(back.position, made.position)
         np.testing.assert_array_equal(back.lines, made.lines)
         for own, told in zip(back.polygons, made.polygons, strict=True):

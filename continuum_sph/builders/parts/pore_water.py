@@ -132,21 +132,22 @@ def water_counts(scene: Scene, soil: Floats) -> tuple[int, int]:
     return len(x), spare(scene, x)
 
 
-def ground_of(scene: Scene) -> tuple[SoilFlow | Frame, Skeleton]:
-    """The soil of a scene, moving or held, and what its water needs of it."""
+def ground_of(scene: Scene, *, hasty: bool = False) -> tuple[SoilFlow | Frame, Skeleton]:
+    """The soil of a scene, moving or held, and what its water needs of it;  hasty : as of `soil.placed`."""
     section = soil_section(scene)
     if section.held:
         frame = held_ground(scene)
         return frame, frame.skeleton
-    ground = soil_flow(scene)
+    ground = soil_flow(scene, hasty=hasty)
     submerge(scene, ground)
     return ground, skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
 
 
-def seepage_flow(scene: Scene) -> Seepage:
-    """Soil and water of a scene, ready for their first step."""
+def seepage_flow(scene: Scene, *, hasty: bool = False) -> Seepage:
+    """Soil and water of a scene, ready for their first step;  hasty : kernels of the water run first, those of the soil
+    (`soil.placed`) then."""
     section, law, spacing = porous_section(scene), pore_law(scene), scene.numerics.spacing
-    ground, skeleton = ground_of(scene)
+    ground, skeleton = ground_of(scene, hasty=hasty)
     x, v, rho = saturate(scene, skeleton.x, *water_particles(scene, law))
     if section.stress == "unconsolidated" and isinstance(ground, SoilFlow):
         rho = leave_to_water(scene, ground, x, v, rho)

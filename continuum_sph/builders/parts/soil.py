@@ -215,11 +215,13 @@ def placed(
     sides: str = "slip",
     skin: float,
     pile: Pile | None = None,
+    hasty: bool = False,
 ) -> SoilFlow:
     """Soil at ``x`` (n, 2) m with ``stress`` (n, 4) Pa in a tank (width, height), m, lower left corner at the origin.
 
     floor, sides : "hold" the soil or let it "slip", sides "none": endless soil, periodic across;  skin : of the pair
-    list, over the smoothing length;  pile : in the soil of a closed tank.
+    list, over the smoothing length;  pile : in the soil of a closed tank;  hasty : rates of the initial state are not
+    worked out yet, so that no kernel runs.
     """
     (width, height), spacing, material = tank, law.spacing, law.materials[0]
     layers = math.ceil(law.smoothing.support / spacing - 0.5 - 1e-9)
@@ -255,7 +257,8 @@ def placed(
         pairs = CutPairList(pairs, pile, n, side, soil.v)
     flow = SoilFlow(soil, law, pairs)
     flow.lower[:], flow.upper[:] = lower, upper
-    flow.start()
+    if not hasty:
+        flow.start()
     return flow
 
 
@@ -361,11 +364,12 @@ def soil_particles(scene: Scene) -> tuple[Floats, Floats]:
     return x, geostatic(top[inside] - x[:, 1], material_of(section), scene.gravity, section.rest)
 
 
-def soil_flow(scene: Scene) -> SoilFlow:
-    """The soil of a scene, ready for its first step."""
+def soil_flow(scene: Scene, *, hasty: bool = False) -> SoilFlow:
+    """The soil of a scene, ready for its first step;  hasty : as of `placed`."""
     section, numerics = soil_section(scene), scene.numerics
     x, stress = soil_particles(scene)
     pile = sheet_pile(scene.pile, numerics.spacing) if scene.pile else None
     return placed(
-        x, stress, scene.inner, soil_law(scene), floor=section.floor, sides=section.sides, skin=numerics.skin, pile=pile
-    )
+        x, stress, scene.inner, soil_law(scene), floor=section.floor, sides=section.sides, skin=numerics.skin,
+        pile=pile, hasty=hasty,
+    )  # fmt: skip

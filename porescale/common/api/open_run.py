@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from functools import cached_property
 from pathlib import Path
 from textwrap import shorten
-from typing import TYPE_CHECKING, Any, Unpack, overload
+from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.extras import installed
@@ -18,6 +18,7 @@ from porescale.common.record import open_run as record
 from porescale.common.record.columns import TIME, WIDE, Columns, missing
 from porescale.common.record.model import Snapshot
 from porescale.common.record.read_card import read_card
+from porescale.common.record.vtkhdf import Readers
 
 if TYPE_CHECKING:
     import pyvista
@@ -74,7 +75,13 @@ class Run(record.Run):
         return self.snapshot(k)
 
     def __iter__(self) -> Iterator[RunSnapshot]:
-        return (self.snapshot(k) for k in range(len(self)))
+        return self.snapshots()
+
+    def snapshots(
+        self, cells: Collection[str] | None = None, numbers: Iterable[int] | None = None
+    ) -> Iterator[RunSnapshot]:
+        """All snapshots in time, or those of these numbers, one in memory at a time; of grids as in `snapshot`."""
+        return cast(Iterator[RunSnapshot], super().snapshots(cells, numbers))
 
     def snapshot(self, k: int, cells: Collection[str] | None = None) -> RunSnapshot:
         """Snapshot ``k`` (negative from the end); of its grids only the arrays in ``cells``, if given.
@@ -84,7 +91,10 @@ class Run(record.Run):
         if not -len(self) <= k < len(self):
             there = f"0 to {len(self) - 1}" if len(self) else "none"
             raise IndexError(f"snapshot {k} is not in this run: it has {len(self)} ({there})")
-        read = super().snapshot(k, cells)
+        return self._read(k, cells)
+
+    def _read(self, k: int, cells: Collection[str] | None, readers: Readers | None = None) -> RunSnapshot:
+        read = super()._read(k, cells, readers)
         grids = {name: read.grids[name] for name in sorted(read.grids, key=_place)}
         clouds = {name: read.clouds[name] for name in sorted(read.clouds, key=_place)}
         found = RunSnapshot(read.time, read.step, grids, clouds)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from porescale.common.core.errors import InputError
 
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from porescale.common.duration.expected import Work
     from porescale.common.record.drive import Outcome
     from porescale.common.schema.sections import Opened, Section
+
+S = TypeVar("S", bound="Section")
 
 
 def drive_scene(
@@ -53,6 +56,35 @@ def drive_scene(
     if outcome.phases and model.building and not options.get("resume"):
         remember(work, {BUILDING: quiet_seconds(*model.building), **outcome.phases}, model.building[0])
     return outcome
+
+
+def rehearsed(module: str, scene: Any, fits: Callable[[], bool]) -> AbstractContextManager[None]:
+    """Within this, ``python -m module`` compiles kernels of ``scene``, too (`ahead`), if there are cores for it.
+
+    fits : whether it comes to them sooner, and the scene may be held twice; asked where a kernel is not on disk.  A
+    scene that names a user's own functions is left alone.
+    """
+    from porescale.common.compiled.ahead import ahead
+    from porescale.common.compiled.jit import threads
+    from porescale.common.schema.own import on_card
+    from porescale.common.schema.sections import scene_as_dict
+
+    def given() -> dict[str, Any] | None:
+        """What the second process reads; None where it is not to be started."""
+        if on_card(scene) or not fits():
+            return None
+        return {"scene": scene_as_dict(scene), "folder": str(scene.source.folder or ""), "threads": threads()}
+
+    return ahead(module, given) if threads() > 1 else nullcontext()
+
+
+def scene_given(given: Mapping[str, Any], scene_type: type[S]) -> S:
+    """The scene that the second process of `rehearsed` was given, with as many threads as the run has."""
+    from porescale.common.compiled.jit import set_threads
+    from porescale.common.schema.sections import validate
+
+    set_threads(given["threads"])
+    return validate(scene_type, given["scene"], folder=Path(given["folder"]) if given["folder"] else None)
 
 
 def check_scene_resume(program: Program, folder: Path, card: dict[str, Any]) -> None:

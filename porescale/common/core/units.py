@@ -19,20 +19,19 @@ _ABSURD = re.compile(r"\d\s*(\*\*|\^)|\d{3}")
 
 
 _USUAL = {
-    "": {"": "1"},
-    "m": {"m": "1", "cm": "0.01", "mm": "0.001", "um": "0.000001", "µm": "0.000001", "km": "1000"},
-    "m^2": {"m^2": "1", "cm^2": "0.0001", "mm^2": "0.000001"},
-    "s": {"s": "1", "ms": "0.001", "us": "0.000001", "µs": "0.000001", "min": "60", "h": "3600"},
-    "m/s": {"m/s": "1", "cm/s": "0.01", "mm/s": "0.001"},
-    "m/s^2": {"m/s^2": "1"},
-    "m^2/s": {"m^2/s": "1", "cm^2/s": "0.0001", "mm^2/s": "0.000001"},
-    "kg/m^3": {"kg/m^3": "1", "g/cm^3": "1000"},
-    "Pa": {"Pa": "1", "kPa": "1000", "MPa": "1000000", "GPa": "1000000000"},
-    "Pa s": {"Pa s": "1", "mPa s": "0.001"},
-    "N/m": {"N/m": "1", "kN/m": "1000"},
+    "m": {"cm": "0.01", "mm": "0.001", "um": "0.000001", "µm": "0.000001", "km": "1000"},
+    "m^2": {"cm^2": "0.0001", "mm^2": "0.000001"},
+    "s": {"ms": "0.001", "us": "0.000001", "µs": "0.000001", "min": "60", "h": "3600"},
+    "m/s": {"cm/s": "0.01", "mm/s": "0.001"},
+    "m^2/s": {"cm^2/s": "0.0001", "mm^2/s": "0.000001"},
+    "rad": {"degree": "0.01745329251994329576923690768", "deg": "0.01745329251994329576923690768"},
+    "kg/m^3": {"g/cm^3": "1000"},
+    "Pa": {"kPa": "1000", "MPa": "1000000", "GPa": "1000000000"},
+    "Pa s": {"mPa s": "0.001"},
+    "N/m": {"kN/m": "1000", "MN/m": "1000000"},
 }
 """Units that most scenes are written in, by the unit wanted, as Pint has them: Pint takes longer to learn its units
-than a scene takes to be checked."""
+than a scene takes to be checked.  The wanted unit itself needs no entry."""
 
 
 @lru_cache(maxsize=1)
@@ -60,7 +59,8 @@ def _parse(unit: str) -> Any:
 @lru_cache(maxsize=512)
 def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
     """Decimals a and b with value in ``unit`` = a * (value in ``source``) + b.  ValueError if none."""
-    if source in (usual := _USUAL.get(unit, {})):
+    usual = {unit: "1"} | _USUAL.get(unit, {})
+    if source in usual:
         return Decimal(usual[source]), Decimal(0)
     import pint
 

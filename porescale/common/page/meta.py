@@ -60,7 +60,7 @@ def shown(run: Run) -> dict[str, Any]:
     if not len(run):
         return {"quantities": {"grids": {}, "clouds": {}}, "view": list(look.view or (0, 1, 0, 1)), "look": {}}
     numbers = sorted(set(np.linspace(0, len(run) - 1, min(SAMPLED, len(run))).round().astype(int).tolist()))
-    sample: list[Snapshot] = [run.snapshot(k) for k in numbers]
+    sample: list[Snapshot] = list(run.snapshots(None, numbers))
     everything = survey(sample, look)
     first = sample[0]
     quantities: dict[str, dict[str, Any]] = {"grids": {}, "clouds": {}}

@@ -98,7 +98,7 @@ def fitting(run: Run, mebibytes: float) -> Precision:
         return LADDER[0]
     numbers = sorted(set(np.linspace(0, len(run) - 1, min(PROBED, len(run))).round().astype(int).tolist()))
     room = 0.9 * mebibytes * 2**20 - 200_000.0  # the scripts, the tables and the texts
-    look, probed = run.program.look(run), [run.snapshot(k) for k in numbers]
+    look, probed = run.program.look(run), list(run.snapshots(None, numbers))
     for precision in LADDER:
         packs = (pack(it, look, precision, probed[0] if k else None) for k, it in enumerate(probed))
         sizes = [len(_packed(content)) for content in packs]
@@ -116,8 +116,7 @@ def _entries(run: Run, precision: Precision) -> Iterator[tuple[str, bytes]]:
     errors: dict[str, float] = {}
     look = run.program.look(run)
     first: Snapshot | None = None
-    for i, k in enumerate(kept(len(run), precision.thin)):
-        snapshot = run.snapshot(k)
+    for i, snapshot in enumerate(run.snapshots(None, kept(len(run), precision.thin))):
         content = pack(snapshot, look, precision, first)
         first = first or snapshot
         _largest(errors, content)

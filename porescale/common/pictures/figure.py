@@ -86,9 +86,7 @@ def _surveyed(looked: Looked, wanted: Wanted, *, film: bool) -> tuple[Survey, li
     looks = [wanted.look(look, run) for run, look in looked]
     title = looks[0].title or looked[0][0].name
     title = title if len(looked) == 1 else ""
-    shown: Iterator[Snapshot] = chain.from_iterable(
-        (run.snapshot(k, looks[0].cells) for k in surveyed(run)) for run, _ in looked
-    )
+    shown: Iterator[Snapshot] = chain.from_iterable(run.snapshots(looks[0].cells, surveyed(run)) for run, _ in looked)
     return survey(shown, replace(looks[0], title=title)), chosen
 
 

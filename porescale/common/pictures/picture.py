@@ -110,7 +110,7 @@ def painter_of(run: Run, look: Look) -> Painter:
         repair = "let it run until its first snapshot"
         raise InputError(Fault("run folder", str(run.folder), "no snapshots to paint", repair=repair))
     title = look.title or run.name
-    return Painter(survey((run.snapshot(k, look.cells) for k in surveyed(run)), replace(look, title=title)))
+    return Painter(survey(run.snapshots(look.cells, surveyed(run)), replace(look, title=title)))
 
 
 def surveyed(run: Run) -> list[int]:
@@ -126,7 +126,7 @@ def pictures(run: Run, painter: Painter) -> list[Path]:
     made = {"final.png": painter.paint(last)}
     times = np.unique(np.linspace(0, len(run) - 1, 6).round().astype(int))
     if len(times) > 1:
-        made["montage.png"] = montage(painter, [run.snapshot(int(k), cells) for k in times])
+        made["montage.png"] = montage(painter, list(run.snapshots(cells, times.tolist())))
     if painter.survey.look.streamlines:
         made["streamlines.png"] = painter.streamlines(last)
     for name, image in made.items():

@@ -1,6 +1,6 @@
 """Open the folder of a run, finished or killed, and look at it."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from porescale.common.record.columns import Columns
 from porescale.common.record.model import Snapshot
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series
-from porescale.common.record.vtkhdf import Frame
+from porescale.common.record.vtkhdf import Frame, Readers
 
 
 class Run:
@@ -67,9 +67,13 @@ class Run:
 
         IndexError beyond the last, InputError when its file is damaged.
         """
+        return self._read(k, cells)
+
+    def _read(self, k: int, cells: Collection[str] | None, readers: Readers | None = None) -> Snapshot:
+        """`snapshot`;  readers : as of `snapshots.load`."""
         step, entry = self._frames[k]
         try:
-            return snapshots.load(entry, step, cells)
+            return snapshots.load(entry, step, cells, readers)
         except snapshots.DAMAGE as error:
             raise snapshots.damaged(self.folder, error) from error
 
@@ -81,9 +85,13 @@ class Run:
         """The snapshot nearest to ``time``, s."""
         return self.snapshot(int(np.abs(self.times - time).argmin()))
 
-    def snapshots(self, cells: Collection[str] | None = None) -> Iterator[Snapshot]:
-        """All snapshots in time, one in memory at a time."""
-        return (self.snapshot(k, cells) for k in range(len(self)))
+    def snapshots(
+        self, cells: Collection[str] | None = None, numbers: Iterable[int] | None = None
+    ) -> Iterator[Snapshot]:
+        """All snapshots in time, or those of these numbers, one in memory at a time; of grids as in `snapshot`."""
+        with Readers() as readers:
+            for k in range(len(self)) if numbers is None else numbers:
+                yield self._read(k, cells, readers)
 
 
 def open_run(folder: Path | str) -> Run:

@@ -16,7 +16,7 @@ from porescale.common.core import atomic
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record import vtkhdf
 from porescale.common.record.model import Cloud, Grid, Snapshot
-from porescale.common.record.vtkhdf import Frame
+from porescale.common.record.vtkhdf import Frame, Readers
 
 PARTS = "parts"
 FramesOf = Callable[[Path], list[Frame]]
@@ -87,11 +87,19 @@ def catalogue(folder: Path, read: FramesOf = vtkhdf.frames_of) -> dict[int, dict
     return {step: entry for step, entry in sorted(found.items()) if entry.keys() == names}
 
 
-def load(frames: dict[str, Frame], step: int, cells: Collection[str] | None = None) -> Snapshot:
-    """One entry of the catalogue, read; of grids only the arrays named in ``cells``, if given."""
+def load(
+    frames: dict[str, Frame], step: int, cells: Collection[str] | None = None, readers: Readers | None = None
+) -> Snapshot:
+    """One entry of the catalogue, read; of grids only the arrays named in ``cells``, if given.
+
+    readers : of files that stay open, where more entries are read.
+    """
+    if readers is None:
+        with Readers() as own:
+            return load(frames, step, cells, own)
     snapshot = Snapshot(next(iter(frames.values())).time, step)
     for name, frame in frames.items():
-        block = vtkhdf.read_frame(frame.path, frame.index, cells)[2]
+        block = readers.of(name, frame.path).frame(frame.index, cells)
         if isinstance(block, Grid):
             snapshot.grids[name] = block
         elif isinstance(block, Cloud):

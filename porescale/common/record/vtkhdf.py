@@ -23,7 +23,16 @@ from porescale.common.core.hdf5 import writing
 from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud, Grid
 from porescale.common.record.read_card import require_format
-from porescale.common.record.vtkhdf_cells import JOINED, NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
+from porescale.common.record.vtkhdf_cells import (
+    JOINED,
+    NO_CELLS,
+    TOPOLOGIES,
+    Cells,
+    cells_of,
+    read_cells,
+    used,
+    with_cells,
+)
 
 FORMAT = 1
 """Format number that is written into these files."""
@@ -257,19 +266,62 @@ def frames_of(path: Path) -> list[Frame]:
     return [Frame(path, k, int(s), float(t), int(n)) for k, (s, t, n) in enumerate(rows)]
 
 
-def read_frame(path: Path, index: int, cells: Collection[str] | None = None) -> tuple[str, str, Grid | Cloud]:
-    """One frame as (kind, name, block), kind "grids" or "clouds"; of a grid only ``cells``, if named."""
-    with h5py.File(path, "r") as file:
-        kind, name, root = _kind(file), str(file["porescale"].attrs["name"]), file["VTKHDF"]
-        stored = dict(root["CellData" if kind == "grids" else "PointData"].items())
-        units = {key: str(item.attrs["units"]) for key, item in stored.items()}
-        if kind == "grids":
-            origin, spacing = _geometry(file)
-            wanted = [key for key in stored if cells is None or key in cells] or list(stored)[:1]
-            return kind, name, Grid(origin, spacing, {key: stored[key][index] for key in wanted}, units)
-        rows = _rows(file, index)
-        cloud = Cloud(root["Points"][rows][:, :2], {key: item[rows] for key, item in stored.items()}, units)
-        return kind, name, with_cells(cloud, read_cells(file, index, JOINED))
+class Reader:
+    """The frames of a file, which stays open until `close`: what they have in common is read once."""
+
+    def __init__(self, path: Path) -> None:
+        self.path, self._file = path, h5py.File(path, "r")
+        try:
+            root, self._grid = self._file["VTKHDF"], _kind(self._file) == "grids"
+            self._stored = dict(root["CellData" if self._grid else "PointData"].items())
+            self._units = {key: str(item.attrs["units"]) for key, item in self._stored.items()}
+            if self._grid:
+                self._geometry = _geometry(self._file)
+            else:
+                self._points, self._joined = root["Points"], used(self._file, JOINED)
+                starts = root["Steps/PointOffsets"][...].tolist(), root["NumberOfPoints"][...].tolist()
+                self._rows = [slice(start, start + count) for start, count in zip(*starts, strict=True)]
+        except BaseException:
+            self.close()
+            raise
+
+    def frame(self, index: int, cells: Collection[str] | None = None) -> Grid | Cloud:
+        """One frame; of a grid only ``cells``, if named."""
+        if self._grid:
+            wanted = [key for key in self._stored if cells is None or key in cells] or list(self._stored)[:1]
+            arrays = {key: self._stored[key][index] for key in wanted}
+            return Grid(*self._geometry, arrays, dict(self._units))
+        rows = self._rows[index]
+        arrays = {key: item[rows] for key, item in self._stored.items()}
+        cloud = Cloud(self._points[rows][:, :2], arrays, dict(self._units))
+        return with_cells(cloud, read_cells(self._file, index, self._joined))
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+class Readers:
+    """Context within which files of frames stay open: of each grid and cloud the one that was read last."""
+
+    def __init__(self) -> None:
+        self._open: dict[str, Reader] = {}
+
+    def __enter__(self) -> "Readers":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for reader in self._open.values():
+            reader.close()
+
+    def of(self, name: str, path: Path) -> Reader:
+        """The reader of the file at ``path``, of the grid or cloud ``name``."""
+        reader = self._open.get(name)
+        if reader is None or reader.path != path:
+            if reader is not None:
+                self._open.pop(name).close()
+            reader = self._open[name] = Reader(path)
+        return reader
 
 
 def read_array(frame: Frame, name: str) -> AnyArray:
@@ -284,7 +336,7 @@ def read_array(frame: Frame, name: str) -> AnyArray:
 def _cells(frame: Frame) -> Cells:
     """The cells of one frame of a cloud's file."""
     with h5py.File(frame.path, "r") as file:
-        return read_cells(file, frame.index)
+        return read_cells(file, frame.index, used(file))
 
 
 def _kind(file: h5py.File) -> str:

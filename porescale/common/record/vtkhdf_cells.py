@@ -39,16 +39,18 @@ def cells_of(cloud: Cloud) -> Cells:
     return found
 
 
-def read_cells(file: h5py.File, index: int, wanted: Collection[str] = TOPOLOGIES) -> Cells:
-    """The cells of a step, of those topologies in ``wanted`` that the file has."""
+def used(file: h5py.File, among: Collection[str] = TOPOLOGIES) -> list[str]:
+    """The topologies of ``among`` that have room for a cell in any step."""
+    groups = {name: file["VTKHDF"][name] for name in among}
+    return [name for name, it in groups.items() if it["Offsets"].shape[0] != it["NumberOfCells"].shape[0]]
+
+
+def read_cells(file: h5py.File, index: int, topologies: Collection[str]) -> Cells:
+    """The cells of a step, of ``topologies`` that are `used`."""
     found: Cells = {}
     root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
-    for column, name in enumerate(TOPOLOGIES):
-        if name not in wanted:
-            continue
-        group = root[name]
-        if group["Offsets"].shape[0] == group["NumberOfCells"].shape[0]:  # no room for a cell in any step
-            continue
+    for name in topologies:
+        group, column = root[name], TOPOLOGIES.index(name)
         at, before = int(steps["CellOffsets"][index, column]), int(steps["ConnectivityIdOffsets"][index, column])
         cells, ids = int(group["NumberOfCells"][index]), int(group["NumberOfConnectivityIds"][index])
         offsets = group["Offsets"][at + index : at + index + cells + 1]

@@ -100,9 +100,11 @@ class VelocityLinks:
         self.of(side)[:] = velocity
 
     def write(self, added: NDArray[np.floating]) -> None:
-        """Overwrite in ``added`` what the links of velocity sides add to reflected populations."""
-        _add(added, self._link, self._at, self._along, self.velocity)
-        _turn(added, self._turn, self._turned, self.velocity)
+        """Overwrite in ``added`` what the links of velocity sides add to reflected populations; without such sides no
+        kernel is compiled."""
+        if self:
+            _add(added, self._link, self._at, self._along, self.velocity)
+            _turn(added, self._turn, self._turned, self.velocity)
 
 
 def _joined(bounds: Bounds, side: str, link: Link) -> tuple[tuple[int, int], float]:

@@ -78,9 +78,9 @@ def test_snapshots_by_number_slice_and_in_turn(run):
 
 def test_one_snapshot_reads_no_other(run, monkeypatch):
     read = []
-    whole = vtkhdf.read_frame
+    whole = vtkhdf.Reader.frame
     monkeypatch.setattr(
-        vtkhdf, "read_frame", lambda path, index, *rest: read.append(index) or whole(path, index, *rest)
+        vtkhdf.Reader, "frame", lambda self, index, *rest: read.append(index) or whole(self, index, *rest)
     )
     run[1]
     assert set(read) == {1}

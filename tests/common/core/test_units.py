@@ -85,8 +85,9 @@ def test_what_is_no_quantity_is_refused_in_words(value: object, unit: str, words
     assert words in str(error.value)
 
 
-def test_numbers_never_load_pint() -> None:
-    code = "import sys; from porescale.common.core.units import to_si; to_si(1.0, 'm'); print('pint' in sys.modules)"
+def test_numbers_and_usual_units_never_load_pint() -> None:
+    code = "import sys; from porescale.common.core.units import to_si; to_si(1.0, 'm'); to_si('30 degree', 'rad'); "
+    code += "to_si('5 N s/m', 'N s/m'); print('pint' in sys.modules)"
     assert done([sys.executable, "-c", code]).stdout.strip() == "False"
 
 

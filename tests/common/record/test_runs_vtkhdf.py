@@ -10,6 +10,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from porescale.common.record import snapshots, vtkhdf
 from porescale.common.record.model import Cloud, Grid, Snapshot
+from porescale.common.record.open_run import Run
 
 COUNTS = [3, 0, 0, 7, 7]
 
@@ -36,6 +37,26 @@ def folder(tmp_path):
             snapshots.assemble(tmp_path)
     snapshots.assemble(tmp_path)
     return tmp_path
+
+
+def test_snapshots_one_after_the_other_are_those_by_themselves(folder):
+    run = Run(folder, {}, snapshots.catalogue(folder))
+    for k, found in zip((4, 1, 3), run.snapshots(numbers=(4, 1, 3)), strict=True):
+        alone = run.snapshot(k)
+        assert (found.time, found.step) == (alone.time, alone.step) == (snapshot(k).time, snapshot(k).step)
+        for (_, _, one), (_, _, other) in zip(found.blocks(), alone.blocks(), strict=True):
+            assert list(one) == list(other)
+            assert one.units == other.units
+            assert all(np.array_equal(one[name], other[name]) for name in one)
+
+
+def test_a_file_is_open_no_longer_than_its_snapshots_are_read(folder):
+    some = Run(folder, {}, snapshots.catalogue(folder)).snapshots()
+    next(some)
+    with pytest.raises(OSError, match="open"):  # the twin: it is open here
+        h5py.File(folder / "fields.vtkhdf", "r+")
+    some.close()
+    h5py.File(folder / "fields.vtkhdf", "r+").close()
 
 
 def at_each_step(path):
@@ -173,7 +194,8 @@ def test_what_a_file_cannot_hold_is_refused_and_nothing_written(tmp_path, block,
 def test_flags_and_half_floats_become_types_that_vtk_knows(tmp_path):
     cells = {"on": np.eye(2, dtype=bool), "half": np.eye(2, dtype=np.float16)}
     vtkhdf.write_frame(tmp_path / "x.vtkhdf", "x", Grid((0, 0), (1, 1), cells), 0, 0.0)
-    read = vtkhdf.read_frame(tmp_path / "x.vtkhdf", 0)[2]
+    with vtkhdf.Readers() as readers:
+        read = readers.of("x", tmp_path / "x.vtkhdf").frame(0)
     assert isinstance(read, Grid)
     assert read.cells["on"].dtype == np.uint8
     assert read.cells["half"].dtype == np.float32
