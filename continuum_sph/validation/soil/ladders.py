@@ -60,7 +60,7 @@ for name, what, grains in (("sand", "sand", SAND), ("beads", "glass beads", BEAD
         f"soil.run_out_of_{name}",
         title=f"Largest relative error of the run-outs of columns of {what}, H/L 0.5 to 4, from the experiments' law",
         along="rows of particles to the root of a column's area",
-        levels=(10, 20, 40),
+        levels=(10, 20, 40, 80),
         because="no order is expected: a law drawn through experiments is no limit; coarse deposits are few "
         "particles deep, and a front is known to half a particle",
     )(partial(run_out_error, grains))
