@@ -16,7 +16,7 @@ from typing import Any
 
 from porescale.common.compiled.own_sources import place, sources_of
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.units import to_si
+from porescale.common.core.units import require_unit, to_si
 
 CONTACT_LAW, BODY_FORCE, INFLOW = "contact_law", "body_force", "inflow"
 ARGUMENTS: dict[str, tuple[tuple[str, ...], ...]] = {
@@ -140,7 +140,7 @@ def _law(kind: str, function: Any, keys: Mapping[str, str]) -> OwnLaw:
         if not (isinstance(key, str) and key.isidentifier() and not key.startswith("_")):
             raise InputError(Fault(where, str(key), "is no name for a key", repair="take letters, digits and _"))
         try:
-            to_si(f"1 {unit}" if unit else 1, unit)
+            require_unit(unit)
         except (ValueError, TypeError) as error:
             problem = f"unit of the key {key!r}: {error}"
             raise InputError(Fault(where, str(unit), problem, repair="give an SI unit, such as N/m")) from None

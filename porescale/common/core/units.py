@@ -74,6 +74,12 @@ def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
     return one - zero, zero
 
 
+def require_unit(unit: str) -> None:
+    """ValueError where ``unit`` is none; "" is that of a plain number."""
+    if unit and unit not in _USUAL:
+        _parse(unit)
+
+
 def to_si(value: Any, unit: str) -> float:
     """``value`` in ``unit`` (an SI unit, "" for a plain number), as a float.
 

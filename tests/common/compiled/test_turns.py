@@ -184,7 +184,7 @@ COMPILES = """import time
 from pathlib import Path
 from porescale.common.compiled.ahead import serve
 from porescale.common.compiled.turns import TURNS
-serve(lambda folder: (TURNS.take("kernel", Path(folder) / "key"), time.sleep(600)))
+serve(lambda folder: (TURNS.take("kernel", Path(folder) / "key"), Path(folder, "begun").touch(), time.sleep(600)))
 """
 
 
@@ -241,7 +241,8 @@ def test_one_that_is_ended_while_it_compiles_leaves_no_lock(process, module):
     with ahead.ahead(module(COMPILES), lambda: str(file.parent)):
         mine.take("kernel", file.parent / "kernel")
         mine.end()
-        awaited(lambda: (file.parent / f"key{SUFFIX}").exists())
+        awaited((file.parent / "begun").exists)  # the file of a lock is there a moment before the lock is held
+        assert (file.parent / f"key{SUFFIX}").exists()
     assert list(file.parent.glob(f"*{SUFFIX}")) == []
 
 
