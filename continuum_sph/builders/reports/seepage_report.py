@@ -114,14 +114,14 @@ def cost(scene: Scene, out: Report, step: float, there: Counts) -> None:
 def moving(scene: Scene, out: Report, stiff: float) -> float:
     """Rows on soil that moves with water of a stiffness ρ c² (Pa), ``stiff``; the longest step (s) for their sound."""
     section, h = soil_section(scene), pore_law(scene).smoothing.length
-    porosity, density, gravity, modulus = section.porosity, scene.water.density, GRAVITY, largest_modulus(scene)
+    porosity, density, modulus = section.porosity, scene.water.density, largest_modulus(scene)
     sound = (modulus / section.density) ** 0.5
     ratio, whole = stiff / (porosity * modulus), porosity * density + section.density
     out.row("modulus of a column at the floor", modulus, "Pa")
     out.row("longest step for its sound", min(soil_law(scene).limits(0.0, sound / h, float("inf"))), "s")
     out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
     out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
-    spread = section.permeability * modulus / (density * gravity)
+    spread = section.permeability * modulus / (density * GRAVITY)
     out.row("consolidation coefficient", spread, "m2/s")
     out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
     step = float(SHARE * h / ((modulus + stiff / porosity) / whole) ** 0.5)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.seepage import Frame, Resistance, Seepage
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.stress import YY
@@ -159,7 +160,6 @@ def boiling_row() -> Measured:
 
 LIFTS = (1.05, 1.1, 1.2)
 """Gradients of the head at the base, over the critical one."""
-PASSES = 0.5  # spacings of water through the face, after which a run of a scene ends
 
 
 @functools.cache
@@ -174,13 +174,13 @@ def lift(part: float, column: Permeameter = BOILING) -> tuple[float, float, floa
     width, grains, spacing = COLUMNS * column.height / column.rows, soil.mass[:soils], column.height / column.rows
     weight = GRAVITY * float(water.sum() + grains.sum()) / width
     taken, halfway, passed = 0.0, 0.0, 0.0
-    while passed < PASSES * spacing:
+    while passed < FARTHEST * spacing:
         both.advance()
         # What is left without weight and water is that of the floor: forces within the soil cancel.
         held = grains * (soil.acceleration[:, 1] + GRAVITY) - both.water.skeleton.force[:, 1]
         taken += both.next_step * float(held.sum()) / width
         speed = float(grains @ soil.v[:soils, 1] / grains.sum())
-        halfway = speed if passed < 0.5 * PASSES * spacing else halfway
+        halfway = speed if passed < 0.5 * FARTHEST * spacing else halfway
         passed = float((layer.x[face.rows, 1] - both.water.home[face.rows, 1]).mean())
     gained = float(water @ layer.v[:n, 1] + grains @ soil.v[:soils, 1]) / width - taken
     return gained / ((column.base(part * column.critical) - weight) * both.time), halfway, speed
@@ -192,7 +192,7 @@ def lift(part: float, column: Permeameter = BOILING) -> tuple[float, float, floa
     "alone; i of the head 1.05, 1.1, 1.2 i_c",
     because="a quarter of a spacing of water, which no particles stand for, lies before the face in the mean of a run, "
     "and takes ρ g i of its pressure a metre: 1.2/0.2 · 0.25/20 of what lifts, of the largest head",
-    tolerance=LIFTS[-1] / (LIFTS[-1] - 1.0) * 0.5 * PASSES / BOILING.rows,
+    tolerance=LIFTS[-1] / (LIFTS[-1] - 1.0) * 0.5 * FARTHEST / BOILING.rows,
     slow=True,
 )
 def lift_row() -> Measured:

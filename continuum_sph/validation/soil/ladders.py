@@ -46,7 +46,7 @@ for name, title, because, options in (
     because="no order is expected: below the limit nothing shears; 1 mm is allowed, a shear strain of 1e-3",
 )
 def creep(rows: float) -> float:
-    """m; exact: 0."""
+    """Displacement (m) of the particle that moves farthest; none does exactly."""
     return slope(NEAR, 5.0, int(rows))
 
 

@@ -297,7 +297,7 @@ class Reader:
         return with_cells(cloud, read_cells(self._file, index, self._joined))
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file; no frame can be read after that."""
         self._file.close()
 
 

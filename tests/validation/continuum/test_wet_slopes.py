@@ -31,6 +31,7 @@ def test_a_slope_in_still_water_does_not_slide_as_with_seepage_nor_the_other_way
 
 @pytest.mark.slow
 def test_a_slope_beyond_its_wet_limit_does_not_rest():
+    assert SEEPING.acceleration(False) < 0.0 < wet_slopes.slides(SEEPING)[0]
     assert wet_slopes.slides(SEEPING)[1] > 3.0 * tolerance("continuum.soil_rests_below_its_wet_limits")
 
 
