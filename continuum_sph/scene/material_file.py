@@ -74,6 +74,18 @@ class Pores(Section):
     permeability: float = quantity("m^2", gt=0)
 
 
+class Rate(Section):
+    """How friction grows with the rate of shear, sin φ(I) = sin φ_c + (sin φ_fast - sin φ_c) I/(I0 + I).
+
+    I = γ̇ d √(ρs/p), γ̇ the difference of the principal rates of strain in the plane, p the mean stress there, ρs the
+    density of grains.  grain_diameter : d;  friction_angle : φ_fast;  inertial_number : I0.
+    """
+
+    grain_diameter: float = quantity("m", gt=0)
+    friction_angle: float = quantity("rad", gt=0, lt=0.5 * math.pi)
+    inertial_number: float = quantity("", gt=0)
+
+
 class MaterialFile(Section):
     """The contents of a material file, see `porescale homogenise`."""
 
@@ -81,6 +93,7 @@ class MaterialFile(Section):
     soil: Taken
     strength: Strengths
     pores: Pores | None = None
+    rate: Rate | None = None
     measured: dict[str, Known] = pydantic.Field(default_factory=dict)
     made: dict[str, Any] = pydantic.Field(default_factory=dict, description="how the file was made")
 
@@ -152,6 +165,8 @@ def with_material(table: Any, folder: Path | None) -> Any:
         origin["intrinsic_permeability"] = file.pores.permeability
         taken["permeability"] = speed(file.pores.permeability, table.get("water"))
     own = {key: value for key, value in soil.items() if key != "material"}
+    if file.rate is not None and isinstance(own.get("rate"), Mapping):  # only a scene that has the table takes it over
+        own["rate"] = {**file.rate.model_dump(), **own["rate"]}
     return {**table, "soil": {**taken, **own, "origin": origin}}
 
 

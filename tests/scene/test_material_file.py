@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from continuum_sph.builders.reports.soil_report import soil_report
+from continuum_sph.scene import material_file
 from continuum_sph.scene.material_file import DENSITY, VISCOSITY
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.water import WaterSection
@@ -139,6 +140,22 @@ def test_what_the_scene_says_wins(tmp_path):
     assert soil.porosity == pytest.approx(0.19)
 
 
+RATE = {"grain_diameter": 1.5e-3, "friction_angle": 0.6, "inertial_number": 0.3}
+
+
+def test_only_a_scene_with_a_table_of_rates_takes_them_over_and_its_own_keys_win(tmp_path):
+    material(tmp_path, rate=RATE)
+    named = {"material": "material.toml"}
+    with_material = material_file.with_material
+    assert "rate" not in with_material({"soil": named}, tmp_path)["soil"]
+    assert with_material({"soil": {**named, "rate": {}}}, tmp_path)["soil"]["rate"] == RATE
+    own = {"friction_angle": "30 degree"}
+    assert with_material({"soil": {**named, "rate": own}}, tmp_path)["soil"]["rate"] == {**RATE, **own}
+    assert with_material({"soil": {**named, "rate": 3}}, tmp_path)["soil"]["rate"] == 3  # the section judges it
+    material(tmp_path)  # a file without rates leaves the table as it is
+    assert with_material({"soil": {**named, "rate": own}}, tmp_path)["soil"]["rate"] == own
+
+
 def test_permeability_is_that_of_the_scenes_own_water(tmp_path):
     material(tmp_path)
     plain, thick = scene(tmp_path).soil, scene(tmp_path, water='[water]\nviscosity = "0.01 Pa s"\ndensity = 500\n').soil
@@ -176,6 +193,8 @@ def test_the_card_keeps_where_numbers_come_from(tmp_path):
         ({"strength": {"critical": {"friction_angle": 0.3, "dilatancy_angle": 0.0}}}, "strength.peak"),
         ({"pores": {"permeability": 0.0}}, "pores.permeability"),
         ({"sole": {"density": 1.0}}, "sole"),
+        ({"rate": {**RATE, "friction_angle": 1.6}}, "rate.friction_angle"),
+        ({"rate": {"grain_diameter": 1e-3, "friction_angle": 0.6}}, "rate.inertial_number"),
     ],
 )
 def test_a_wrong_file_is_refused_by_name(tmp_path, spoil, said):
