@@ -1,14 +1,15 @@
 """Convergence of soil, at several spacings: the friction of an endless layer that slides, from a strewn lattice, the
-creep of a slope, and how far columns run out."""
+creep of a slope, fast flow, and how far columns run out."""
 
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from continuum_sph.validation.soil import fast_flow
 from continuum_sph.validation.soil.run_outs import BEADS, SAND, Grains, run_outs
 from continuum_sph.validation.soil.setups import TAN_PHI
-from continuum_sph.validation.soil.slopes import NEAR, slope, strewn_friction
+from continuum_sph.validation.soil.slopes import NEAR, slope, strewn_friction, sunk
 from porescale.common.evidence.convergence import Ladders
 
 LADDERS = Ladders()
@@ -48,6 +49,33 @@ for name, title, because, options in (
 def creep(rows: float) -> float:
     """Displacement (m) of the particle that moves farthest; none does exactly."""
     return slope(NEAR, 5.0, int(rows))
+
+
+@LADDERS.ladder(
+    "soil.fast_flow",
+    title="Root mean square error of the speeds of a layer on 32° whose friction grows with the rate of shear, over "
+    "that of Bagnold's profile",
+    along="rows of particles",
+    levels=(10, 20, 40),
+    expected=1.0,
+    within=0.1,
+    because="the floor holds half of its row; speeds of strewn particles fluctuate by a hundredth",
+)
+def fast_flow_error(rows: float) -> float:
+    """Of the speeds, 8 s after the layer was let go."""
+    return fast_flow.error(int(rows))
+
+
+@LADDERS.ladder(
+    "soil.height_of_what_slides",
+    title="By how much the middle of a layer 1 m deep sinks while it slides 8 m on its floor, m",
+    along="rows of particles",
+    levels=(10, 20, 40, 80),
+    because="no order is expected: shear changes no volume; where surface and floor lie is known to half of a row",
+)
+def sinking(rows: float) -> float:
+    """Of a slope of 32°, after 4 s."""
+    return abs(sunk(int(rows)))
 
 
 def run_out_error(grains: Grains, rows: float) -> float:
