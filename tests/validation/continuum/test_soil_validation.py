@@ -145,9 +145,10 @@ def test_a_layer_beyond_its_limit_does_not_stop():
 
 
 @pytest.mark.slow
-def test_energy_without_what_walls_take_does_not_add_up():
-    # Of the other small entries, parting is 0.1 % and stops less: within what the row allows.
-    assert abs(energy.collapse(seconds=0.2).missing(without="walls")) > 1.5 * tolerance("continuum.soil_energy")
+@pytest.mark.parametrize("entry", ["walls", "parting"])
+def test_energy_without_what_walls_or_parting_give_does_not_add_up(entry):
+    # 1.4 and 1.5 % of what is lost; nothing is stopped here.
+    assert abs(energy.collapse().missing(without=entry)) > 1.5 * tolerance("continuum.soil_energy")
 
 
 @pytest.mark.slow
