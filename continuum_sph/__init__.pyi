@@ -18,23 +18,3 @@ from .run_folder import Run as Run
 from .scene.sections import Scene as Scene
 
 __version__: str
-__all__ = [
-    "InputError",
-    "Interrupted",
-    "PorescaleError",
-    "PorescaleWarning",
-    "Run",
-    "Scene",
-    "Simulation",
-    "Unstable",
-    "__version__",
-    "build",
-    "cases",
-    "check",
-    "diff",
-    "load",
-    "open_run",
-    "run",
-    "set_threads",
-    "sweep",
-]

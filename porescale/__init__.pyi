@@ -24,29 +24,3 @@ from .common.core.types import Floats as Floats
 from .common.record.stop import Interrupted as Interrupted
 
 __version__: str
-__all__ = [
-    "GRAVITY",
-    "Floats",
-    "InputError",
-    "Interrupted",
-    "PorescaleError",
-    "PorescaleWarning",
-    "Run",
-    "Scene",
-    "Simulation",
-    "Unstable",
-    "__version__",
-    "body_force",
-    "build",
-    "cases",
-    "check",
-    "contact_law",
-    "diff",
-    "inflow",
-    "load",
-    "open_run",
-    "piv",
-    "run",
-    "set_threads",
-    "sweep",
-]

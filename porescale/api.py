@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from porescale.builders.scene import Scene
     from porescale.builders.simulation import Simulation
 
-__all__ = ["build", "cases", "check", "diff", "load", "open_run", "run", "set_threads", "sweep"]
-
 _OF_PACKAGE: Interface[Scene, Simulation] = Interface(PROGRAM)
 load, diff, build, check = _OF_PACKAGE.load, _OF_PACKAGE.diff, _OF_PACKAGE.build, _OF_PACKAGE.check
 run, open_run, sweep = _OF_PACKAGE.run, _OF_PACKAGE.open_run, _OF_PACKAGE.sweep

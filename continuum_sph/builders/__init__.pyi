@@ -4,5 +4,3 @@ from .parts.soil import geostatic as geostatic
 from .parts.soil import material_of as material_of
 from .parts.water import wall_layers as wall_layers
 from .parts.water import water_flow as water_flow
-
-__all__ = ["SoilPart", "geostatic", "material_of", "wall_layers", "water_flow"]

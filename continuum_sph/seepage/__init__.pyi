@@ -8,15 +8,3 @@ from .skeleton import Frame as Frame
 from .skeleton import Skeleton as Skeleton
 from .skeleton import skeleton_of as skeleton_of
 from .step import Seepage as Seepage
-
-__all__ = [
-    "Frame",
-    "PoreFlow",
-    "PressureFace",
-    "Reservoir",
-    "Resistance",
-    "Seepage",
-    "Skeleton",
-    "Supply",
-    "skeleton_of",
-]

@@ -4,5 +4,3 @@ from .outside import Outside as Outside
 from .retention import VanGenuchten as VanGenuchten
 from .richards import Moisture as Moisture
 from .step import MoistSoil as MoistSoil
-
-__all__ = ["Level", "MoistSoil", "Moisture", "Outside", "VanGenuchten"]

@@ -3,5 +3,3 @@ from .eos.liquid import Tait as Tait
 from .smoothing import Smoothing as Smoothing
 from .state import Layer as Layer
 from .step import Flow as Flow
-
-__all__ = ["Flow", "Layer", "Smoothing", "Tait"]

@@ -17,24 +17,3 @@ from .motion.control import Control as Control
 from .motion.control import Moved as Moved
 from .motion.drivers import Clump as Clump
 from .motion.time_function import Table as Table
-
-__all__ = [
-    "HIGH",
-    "PX",
-    "PY",
-    "Box",
-    "Clump",
-    "Control",
-    "Discs",
-    "Grains",
-    "Hertz",
-    "Linear",
-    "Moved",
-    "Plate",
-    "Rectangle",
-    "Table",
-    "chain",
-    "framed",
-    "make_discs",
-    "polygon",
-]

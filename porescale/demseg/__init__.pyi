@@ -15,22 +15,3 @@ from .trace import draw_shapes as draw_shapes
 from .trace import fallen as fallen
 from .trace import trace as trace
 from .trace import unbalanced as unbalanced
-
-__all__ = [
-    "MOVED",
-    "NEW",
-    "Body",
-    "Control",
-    "Deck",
-    "DeckRun",
-    "Options",
-    "Trace",
-    "draw_energies",
-    "draw_fall",
-    "draw_shapes",
-    "fallen",
-    "read_deck",
-    "tensions",
-    "trace",
-    "unbalanced",
-]

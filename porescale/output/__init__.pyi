@@ -15,22 +15,3 @@ from .case_bodies import pixels as pixels
 from .case_bodies import shot as shot
 from .case_trade import Tried as Tried
 from .case_trade import trade as trade
-
-__all__ = [
-    "LARGEST",
-    "PLATE",
-    "Shot",
-    "Tried",
-    "by_piece",
-    "conclude",
-    "draw",
-    "draw_bodies",
-    "draw_cracks",
-    "frame",
-    "keep",
-    "options",
-    "pixels",
-    "shot",
-    "stage",
-    "trade",
-]

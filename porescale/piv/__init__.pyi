@@ -9,5 +9,3 @@ from .fields.compare import compare as compare
 from .fields.field import Field as Field
 from .images.synth import Camera as Camera
 from .images.synth import pair as pair
-
-__all__ = ["Camera", "Field", "Settings", "compare", "estimate", "fields", "images", "measure", "pair", "render"]

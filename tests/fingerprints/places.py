@@ -19,7 +19,7 @@ CONCLUDE = "porescale.output.case:conclude"
 """(folder, numbers, figure, out): the end of a script."""
 MEASURE = "porescale.piv.estimate.measure:measure"
 """(first, second, mask, settings) -> displacements of a pair of pictures."""
-OPEN_SCENE = "porescale.common.schema.sections:open_scene"
+READ_SCENE = "porescale.common.schema.sections:load"
 """(path, type of the scene, quality=, overrides=) with the attribute ``scene``."""
 LOAD, BUILD = "porescale.builders.build:load_scene", "porescale.builders.build:build"
 """(path, quality=, settings=) -> scene -> model."""
@@ -74,8 +74,8 @@ def grains_and_fluid(path: Path, quality: str | None, settings: Sequence[str]) -
 
 def continuum(path: Path, quality: str | None, settings: Sequence[str]) -> Any:
     """The model of a scene of continuum_sph."""
-    opened = fetch(OPEN_SCENE)(path, fetch(CONTINUUM_TYPE)(), quality=quality, overrides=settings)
-    return fetch(CONTINUUM_BUILD)(opened.scene)
+    scene = fetch(READ_SCENE)(path, fetch(CONTINUUM_TYPE)(), quality=quality, overrides=settings)
+    return fetch(CONTINUUM_BUILD)(scene)
 
 
 def look(model: Any) -> dict[str, Any]:

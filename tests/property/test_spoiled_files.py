@@ -18,7 +18,7 @@ from porescale.common.pictures.film import write_film
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 from porescale.common.record.open_run import open_run
 from porescale.common.record.read_card import read_card
-from porescale.common.schema.sections import open_scene
+from porescale.common.schema.sections import load
 from porescale.common.studies.front import read_front
 from porescale.common.studies.parameter_table import read_points
 from porescale.common.studies.trade_plan import read_plan
@@ -43,7 +43,7 @@ def scene_of(package) -> Read:
     """Opens a scene and reports it, as `check` does, in any of its qualities."""
 
     def read(file: Path) -> object:
-        return package.report(open_scene(file, package.scene()).scene)
+        return package.report(load(file, package.scene()))
 
     return read
 

@@ -122,6 +122,7 @@ def begun(folder: Path) -> list[list[str]]:
 def stepping() -> "Package":
     """The package."""
     from porescale.common.api.report import Report
+    from porescale.common.schema.scene import SceneBase
     from porescale.common.schema.sections import Section, quantity
     from tests.reference.toy_package import TOY
 
@@ -139,7 +140,7 @@ def stepping() -> "Package":
         disk_fails_at: int = -1
         packs: bool = False
 
-    class SteppingScene(Section):
+    class SteppingScene(SceneBase):
         """A scene."""
 
         time: Time

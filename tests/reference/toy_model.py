@@ -1,20 +1,14 @@
-"""A model without physics that runs can be tested on: beads on springs, a diffusing field, random kicks.
+"""A model without physics that runs can be tested on: beads on springs, a diffusing field, random kicks."""
 
-As a script it is a run that can be killed:  python -m tests.reference.toy_model FOLDER [--resume] ...
-"""
-
-import argparse
-import sys
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from porescale.common.core.errors import PorescaleError, Unstable
+from porescale.common.core.errors import Unstable
 from porescale.common.record.drive import Outcome, drive
 from porescale.common.record.model import Cloud, Grid, Snapshot
-from tests.reference.waiting import PATIENCE
 
 
 class Toy:
@@ -22,9 +16,7 @@ class Toy:
 
     step_seconds = 1e-3
 
-    def __init__(
-        self, beads: int = 7, pause: float = 0.0, breaks_at: int = 1 << 60, varying: bool = False, hold: int = 1 << 60
-    ) -> None:
+    def __init__(self, beads: int = 7, pause: float = 0.0, breaks_at: int = 1 << 60, varying: bool = False) -> None:
         self.random = np.random.default_rng(1)
         self.x = self.random.random((beads, 2))
         self.v = np.zeros((beads, 2))
@@ -32,13 +24,11 @@ class Toy:
         self.step, self.time = 0, 0.0
         self.pause, self.breaks_at, self.variable_step = pause, breaks_at, varying
         self.calls: list[int] = []
-        self.hold = hold
-        """The step that it comes to and no further: it waits there until it is killed."""
 
     def advance(self, steps: int) -> None:
         self.calls.append(steps)
         for _ in range(steps):
-            time.sleep(self.pause if self.step < self.hold else PATIENCE)
+            time.sleep(self.pause)
             dt = self.step_seconds
             self.v += dt * (0.5 - self.x) * 40 + 1e-3 * self.random.normal(size=self.v.shape)
             self.x += dt * self.v
@@ -97,26 +87,3 @@ def run_toy(folder: Path, *, model: Toy | None = None, duration: float = 0.12, *
         "card": {"name": "toy", "scene": scene, "seeds": {"toy": 1}},
     }
     return drive(model or Toy(), folder, duration, **(settings | options))
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser()
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--resume", action="store_true")
-    parser.add_argument("--varying", action="store_true")
-    parser.add_argument("--pause", type=float, default=0.0)
-    parser.add_argument("--duration", type=float, default=0.2)
-    parser.add_argument("--hold", type=int, default=1 << 60)
-    given = parser.parse_args()
-    model = Toy(pause=given.pause, varying=given.varying, hold=given.hold)
-    try:
-        options = {"duration": given.duration, "checkpoint_seconds": 0.02, "resume": given.resume}
-        run_toy(given.folder, model=model, **options)
-    except PorescaleError as error:
-        print(error, file=sys.stderr)
-        return error.code
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -12,6 +12,7 @@ from porescale.common.core.errors import Fault, InputError, PorescaleError, Unst
 from porescale.common.evidence.benchmarks import Benchmarks, Work
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.pictures.look import Look
+from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.sections import Section, quantity
 
 
@@ -25,11 +26,15 @@ class Noise(Section):
     size: float = quantity("", 0.1, ge=0, help="deviation of the rate")
 
 
-class ToyScene(Section):
+class ToyScene(SceneBase):
     decay: Decay
     noise: Noise | None = None
     duration: float = quantity("s", 1.0, gt=0)
     trouble: str = ""
+
+    @property
+    def drawn_at_once(self) -> bool:
+        return False  # there is nothing to draw
 
 
 TEMPLATE = '# How fast it goes.\nduration = "2 s"\n[decay]\nrate = 3\n[quality.fine.decay]\nstart = 2\n'

@@ -14,7 +14,7 @@ from porescale.analysis.doubts import doubts
 from porescale.analysis.material import Known, known, tables
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import open_scene, scene_as_dict, validate
+from porescale.common.schema.sections import load, scene_as_dict, validate
 from porescale.demseg.convert import toml
 
 ROWS = [
@@ -41,7 +41,7 @@ def material(folder: Path, rows: list[dict[str, float]] = ROWS, **more: object) 
 def scene(folder: Path, soil: str = "", water: str = "") -> Scene:
     file = folder / "scene.toml"
     file.write_text(f'{REST}{water}[soil]\nmaterial = "material.toml"\n{soil}{BODY}', encoding="utf-8")
-    return open_scene(file, Scene).scene
+    return load(file, Scene)
 
 
 def test_mean_deviation_and_standard_error():

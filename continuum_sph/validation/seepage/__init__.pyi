@@ -13,20 +13,3 @@ from . import saturated_box as saturated_box
 from . import setups as setups
 from . import sheet_pile as sheet_pile
 from . import wet_slopes as wet_slopes
-
-__all__ = [
-    "air",
-    "bare_exit",
-    "consolidation",
-    "dam",
-    "heave",
-    "infiltration",
-    "levee",
-    "open_water",
-    "permeability",
-    "permeameter",
-    "saturated_box",
-    "setups",
-    "sheet_pile",
-    "wet_slopes",
-]

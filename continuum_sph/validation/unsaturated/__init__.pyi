@@ -3,5 +3,3 @@ from . import columns as columns
 from . import levee as levee
 from . import richards as richards
 from . import slices as slices
-
-__all__ = ["columns", "levee", "richards", "slices"]

@@ -9,16 +9,3 @@ from . import kernels as kernels
 from . import momentum as momentum
 from . import setups as setups
 from . import sound as sound
-
-__all__ = [
-    "channels",
-    "dam_break",
-    "drop_swing",
-    "flows",
-    "fluids",
-    "hydrostatics",
-    "kernels",
-    "momentum",
-    "setups",
-    "sound",
-]

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from porescale.common.record.drive import Outcome
     from porescale.common.record.open_run import Run
     from porescale.common.schema.scene import SceneBase
-    from porescale.common.schema.sections import Opened
 
 
 class Drive(Protocol):
@@ -85,19 +84,18 @@ class Program:
     rehearsed: Callable[[Any], AbstractContextManager[None]] = nullcontext
     formerly: Mapping[str, Any] = field(default_factory=dict)
 
-    def report_of(self, opened: Opened[Any]) -> Report:
-        """The report of an opened scene; InputError whose faults name the scene's file, or --set where that gave the
-        key."""
+    def report_of(self, scene: SceneBase) -> Report:
+        """The report of a scene; InputError whose faults name the scene's file, or --set where that gave the key."""
         from porescale.common.schema.messages import parse_key
         from porescale.common.schema.scene_file import parse_setting
 
         try:
-            return self.report(opened.scene)
+            return self.report(scene)
         except InputError as refused:
-            keys = [parse_setting(text)[0] for text in opened.settings]
+            keys = [parse_setting(text)[0] for text in scene.source.settings]
             given = [any(parse_key(it.key)[: len(key)] == key for key in keys) for it in refused.faults]
             faults = [replace(it, file=it.file or "--set" * own) for it, own in zip(refused.faults, given, strict=True)]
-            raise InputError(faults).in_file(str(opened.file)) from None
+            raise InputError(faults).in_file(str(scene.source.file or "")) from None
 
     def required(self, scene: Any) -> Any:
         """``scene``; InputError unless it is one of this program."""

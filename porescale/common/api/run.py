@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from porescale.common.api.folders import IN_PYTHON, check_folder, named_folder
-from porescale.common.api.run_scene import card_of_scene, check_scene_resume
+from porescale.common.api.run_scene import card_of, check_scene_resume
 from porescale.common.core.errors import Fault, InputError, warn
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def run(
     scene = program.required(given if model is None else model.scene)
     if model is not None:
         _require_start(model)
-    card = card_of_scene(program, scene)
+    card = card_of(program, scene)
     if model is not None and model.hooks:
         card["hooks"] = {name: hook.on_card() for name, hook in model.hooks.items()}
     folder = named_folder(out, card["name"] or "scene", IN_PYTHON.out)

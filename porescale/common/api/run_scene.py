@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from porescale.common.api.simulation import BaseSimulation
     from porescale.common.duration.expected import Work
     from porescale.common.record.drive import Outcome
-    from porescale.common.schema.sections import Opened, Section
+    from porescale.common.schema.scene import SceneBase
+    from porescale.common.schema.sections import Section
 
 S = TypeVar("S", bound="Section")
 
@@ -118,34 +119,17 @@ def _completing(
     return completed
 
 
-def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
-    """The entries of a run card that describe the request."""
-    from porescale.common.schema.own import on_card
-    from porescale.common.schema.sections import scene_as_dict
-
-    return {
-        "package": program.name,
-        "name": opened.name,
-        "scene": scene_as_dict(opened.scene),
-        "scene_file": str(opened.file.resolve()),
-        "quality": opened.quality,
-        "settings": list(opened.settings),
-        **on_card(opened.scene),
-    }
-
-
-def card_of_scene(program: Program, scene: Any) -> dict[str, Any]:
-    """`card_of` of a scene by itself: what it knows of where it comes from."""
+def card_of(program: Program, scene: SceneBase) -> dict[str, Any]:
+    """The entries of a run card that describe the request: a scene, and where it comes from."""
     from porescale.common.schema.own import on_card
     from porescale.common.schema.sections import scene_as_dict
 
     source = scene.source
-    file = source.file
     return {
         "package": program.name,
         "name": source.name,
         "scene": scene_as_dict(scene),
-        "scene_file": str(file.resolve()) if file else None,
+        "scene_file": str(source.file.resolve()) if source.file else None,
         "quality": source.quality,
         "settings": list(source.settings),
         **on_card(scene),

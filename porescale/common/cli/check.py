@@ -34,19 +34,17 @@ def command(package: Package) -> Callable[..., int]:
         picture: Drawing = None,
     ) -> int:
         """Say what a scene means (resolution, stability, cost) without running it; warn or refuse."""
-        from porescale.common.schema.sections import open_scene
+        from porescale.common.schema.sections import load
 
         file = None if picture is None else drawing(*picture)
-        opened = open_scene(
-            require_scene(scene, package.name), package.scene(), quality=quality, overrides=settings or ()
-        )
-        report = package.report_of(opened)
+        read = load(require_scene(scene, package.name), package.scene(), quality=quality, overrides=settings or ())
+        report = package.report_of(read)
         if json:
             print(json_text.dumps(report.as_dict(), indent=1))
         else:
             report.show()
         if file is not None:
-            draw(opened.scene, file, aside=json)
+            draw(read, file, aside=json)
         return 0
 
     return check

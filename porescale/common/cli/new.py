@@ -86,13 +86,12 @@ def _copy(package: Package, name: str, folder: Path) -> None:
 def _draw(package: Package, folder: Path) -> None:
     """Draw the scene in ``folder`` into scene.png, where it takes no longer than to look at it; else say what does."""
     from porescale.common.cli.check import draw
-    from porescale.common.schema.scene import SceneBase
-    from porescale.common.schema.sections import open_scene
+    from porescale.common.schema.sections import load
 
     if not (folder / "scene.toml").is_file():
         return
-    scene = open_scene(folder, package.scene()).scene
-    if isinstance(scene, SceneBase) and scene.drawn_at_once:
+    scene = load(folder, package.scene())
+    if scene.drawn_at_once:
         draw(scene, folder / "scene.png")
     else:
         print(f"see it: {package.name} check {quote(str(folder))} --picture")

@@ -29,19 +29,19 @@ def pick(
     from porescale.common.core.machine import age
     from porescale.common.duration.expected import besides
     from porescale.common.schema.scene_file import find
-    from porescale.common.schema.sections import open_scene
+    from porescale.common.schema.sections import load
     from porescale.common.studies.front import begun, choose, read_front
 
     allowed = None if error is None else share("--error", error)
     seconds = None if budget is None else _seconds(budget)
     file = find(scene)
-    front = read_front(file, _end(open_scene(file, package.scene(), overrides=settings).scene))
+    front = read_front(file, _end(load(file, package.scene(), overrides=settings)))
 
     def here(point: FrontPoint) -> Here:
         """The beginning of the point's scene, and the time it is to simulate, s, where its scene says that."""
-        opened = open_scene(file, package.scene(), quality=point.quality, overrides=(*point.settings, *settings))
-        more = besides(package.report_of(opened).work)  # what contradicts itself is refused
-        return begun(lambda: package.build(opened.scene), _end(opened.scene), more)
+        scene = load(file, package.scene(), quality=point.quality, overrides=(*point.settings, *settings))
+        more = besides(package.report_of(scene).work)  # what contradicts itself is refused
+        return begun(lambda: package.build(scene), _end(scene), more)
 
     try:
         choice = choose(front, allowed, seconds, here, age)
@@ -66,16 +66,14 @@ def _end(scene: Any) -> float | None:
 
 def beyond(package: Package, file: Path, front: Front, point: FrontPoint, settings: Sequence[str]) -> list[str]:
     """In what a run of a point leaves what its front was measured with: scene, settings, range of time."""
-    from porescale.common.schema.sections import open_scene, scene_as_dict
+    from porescale.common.schema.sections import load, scene_as_dict
     from porescale.common.studies.parameter_table import flat
     from porescale.common.studies.trade_plan import read_plan
 
     def keys(overrides: Sequence[str]) -> dict[str, Any]:
         """The scene of the point with ``overrides``, a value for each key."""
         words = (*point.settings, *overrides)
-        return dict(
-            flat(scene_as_dict(open_scene(file, package.scene(), quality=point.quality, overrides=words).scene))
-        )
+        return dict(flat(scene_as_dict(load(file, package.scene(), quality=point.quality, overrides=words))))
 
     over = front.over
     if over is None and (file.parent / "trade.toml").is_file():
@@ -100,9 +98,9 @@ def beyond(package: Package, file: Path, front: Front, point: FrontPoint, settin
 
 
 def _scene(package: Package, file: Path, settings: Sequence[str], quality: str | None = None) -> dict[str, Any]:
-    from porescale.common.schema.sections import open_scene, scene_as_dict
+    from porescale.common.schema.sections import load, scene_as_dict
 
-    return scene_as_dict(open_scene(file, package.scene(), quality=quality, overrides=settings).scene)
+    return scene_as_dict(load(file, package.scene(), quality=quality, overrides=settings))
 
 
 def better_level(package: Package, file: Path, front: Front, error: float) -> str:

@@ -46,38 +46,36 @@ def command(package: Package) -> Callable[..., int]:
     ) -> int:
         """Run a scene and write its run folder."""
         from porescale.common.record.progress import Watch
-        from porescale.common.schema.sections import open_scene
+        from porescale.common.schema.sections import load
 
-        scene = require_scene(scene, package.name)
+        place = require_scene(scene, package.name)
         if device is not None:
             settings = [*(settings or ()), f"run.device={device}"]
         chosen = None
         if error is not None or budget is not None:
             _require_free_choice(quality, resume)
             use_threads(threads)
-            chosen = pick.pick(package, scene, error, budget, settings or (), quiet=quiet)
+            chosen = pick.pick(package, place, error, budget, settings or (), quiet=quiet)
             settings = [*chosen.point.settings, *(settings or ())]
         level = chosen.point.quality if chosen else quality
-        opened = open_scene(scene, package.scene(), quality=level, overrides=settings or ())
-        folder = named_folder(out, opened.name)
+        read = load(place, package.scene(), quality=level, overrides=settings or ())
+        folder = named_folder(out, read.name)
         check_folder(folder, package.name, resume=resume, overwrite=overwrite)
-        card = card_of(package, opened)
+        card = card_of(package, read)
         if chosen is not None:
             card["picked"] = chosen.as_dict()
-        warnings = package.report_of(opened).warnings  # what contradicts itself is refused
+        warnings = package.report_of(read).warnings  # what contradicts itself is refused
         if resume:
             check_scene_resume(package, folder, card)
         use_threads(threads)  # numba counts them; unless moving frames were to be checked, it is imported only now
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
-        with package.rehearsed(opened.scene):
-            with Watch(opened.name, 0.0, _end(opened.scene), quiet=quiet):
-                model = package.build(opened.scene)
-            outcome = package.drive(
-                model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite
-            )
+        with package.rehearsed(read):
+            with Watch(read.name, 0.0, _end(read), quiet=quiet):
+                model = package.build(read)
+            outcome = package.drive(model, folder, read, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
         if not quiet:
-            print(summary(package.name, opened.name, folder, outcome))
+            print(summary(package.name, read.name, folder, outcome))
             if chosen is not None:
                 print(f"expected {chosen.seconds:.3g} s, took {age():.3g} s, start-up and pictures included")
         return 0

@@ -51,7 +51,7 @@ def command(package: Package) -> Callable[..., int]:
         pick from it.  Every point is repeated as [over] of the plan says, or `--repeat`.  A study that was stopped goes
         on when called again.
         """
-        from porescale.common.schema.sections import open_scene, scene_as_dict
+        from porescale.common.schema.sections import load, scene_as_dict
         from porescale.common.studies import trade_files
         from porescale.common.studies.ensemble import Repeats, repeated
         from porescale.common.studies.runner import Campaign
@@ -96,7 +96,7 @@ def command(package: Package) -> Callable[..., int]:
         words += Repeats(repeat, over).options()
         about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
         about["settings"], about["over"] = list(settings or ()), key_of(groups[0][0])
-        about["scene"] = scene_as_dict(open_scene(start, package.scene(), overrides=settings or ()).scene)
+        about["scene"] = scene_as_dict(load(start, package.scene(), overrides=settings or ()))
         about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in planned.quantity]
         about["references"] = errors.answers()
         if reference:

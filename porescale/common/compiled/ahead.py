@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from porescale.common.compiled.turns import TURNS, when_first
+from porescale.common.core.machine import cores
 
 PATIENCE = 10.0
 """Seconds in which the second process must have ended."""
@@ -46,12 +47,6 @@ def ahead(module: str, given: Callable[[], Any]) -> Iterator[None]:
         TURNS.first.clear()
         for second in started:
             _end(*second)
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    allowed = getattr(os, "sched_getaffinity", None)
-    return len(allowed(0)) if allowed else os.cpu_count() or 1
 
 
 def _paths() -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 def machine() -> dict[str, Any]:
     """Processor, cores this process may use, memory (bytes), operating system."""
-    return {"processor": _processor(), "cores": _cores(), "memory": memory_bytes(), "system": platform.platform()}
+    return {"processor": _processor(), "cores": cores(), "memory": memory_bytes(), "system": platform.platform()}
 
 
 def memory_bytes() -> int:
@@ -26,12 +26,12 @@ def age() -> float:
     return max(time.time() - float(psutil.Process().create_time()), 0.0)
 
 
-def _cores() -> int | None:
+def cores() -> int:
     """Cores that this process may use, where the system limits them to some; else those of the machine."""
     import psutil
 
     process = psutil.Process()
-    return len(process.cpu_affinity()) if hasattr(process, "cpu_affinity") else psutil.cpu_count()
+    return len(process.cpu_affinity()) if hasattr(process, "cpu_affinity") else psutil.cpu_count() or 1
 
 
 def _processor() -> str:

@@ -15,11 +15,11 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from porescale.common.compiled.ahead import cores
 from porescale.common.compiled.cache import USED, cache_root
 from porescale.common.compiled.jit import cache_folder, threads
 from porescale.common.compiled.turns import TURNS
 from porescale.common.core.atomic import write_bytes
+from porescale.common.core.machine import cores
 from porescale.common.duration.quiet import Moment, moment, share
 
 START, COMPILING, BUILDING = "start", "compiling", "building"

@@ -15,8 +15,8 @@ import time as clock
 from pathlib import Path
 from typing import NamedTuple
 
-from porescale.common.compiled.ahead import cores
 from porescale.common.compiled.turns import TURNS
+from porescale.common.core.machine import cores
 
 SCHEDSTAT = Path("/proc/thread-self/schedstat")
 BUSY = 1.2

@@ -4,5 +4,3 @@ from .placement import Placement as Placement
 from .placement import place as place
 from .placement import square_lattice as square_lattice
 from .placement import triangular_lattice as triangular_lattice
-
-__all__ = ["PairList", "Placement", "place", "square_lattice", "triangular_lattice"]

@@ -1,4 +1,2 @@
 # The public names of porescale.common.pictures: films.
 from .film import write_film as write_film
-
-__all__ = ["write_film"]

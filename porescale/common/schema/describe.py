@@ -1,13 +1,13 @@
 """Sections as people read them: in a few lines, as a table, and what differs between two of them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from html import escape
 from typing import Any
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from porescale.common.core.html import html_table
 from porescale.common.schema.messages import Key, dotted
 from porescale.common.schema.quantity import Quantity
 
@@ -86,15 +86,7 @@ def as_html(section: BaseModel, caption: str) -> str:
             rows.append((dotted(it.key), _short(it.value), it.unit, it.help))
         left += not it.given or hidden
     foot = f"<p>{left} more keys, of long lists or as by default: to_dict()</p>" if left else ""
-    return html_table(("key", "value", "unit", ""), rows, caption) + foot
-
-
-def html_table(head: Iterable[str], rows: Iterable[Iterable[str]], caption: str = "") -> str:
-    """An HTML table of texts, which are escaped."""
-    lines = ["<table>", f"<caption>{escape(caption)}</caption>" if caption else ""]
-    lines.append(f"<tr>{''.join(f'<th>{escape(it)}</th>' for it in head)}</tr>")
-    lines += [f"<tr>{''.join(f'<td>{escape(it)}</td>' for it in row)}</tr>" for row in rows]
-    return "".join([*lines, "</table>"])
+    return html_table(caption, ("key", "value", "unit", ""), rows) + foot
 
 
 def differences(a: Any, b: Any, key: Key = (), unit: str = "") -> Iterator[tuple[Key, Any, Any, str]]:

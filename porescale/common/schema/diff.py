@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.schema.describe import clipped, differences, html_table
+from porescale.common.core.html import html_table
+from porescale.common.schema.describe import clipped, differences
 from porescale.common.schema.messages import dotted
 from porescale.common.schema.sections import Section, validate
 
@@ -48,7 +49,7 @@ class Diff(Mapping[str, tuple[Any, Any]]):
     def _repr_html_(self) -> str:
         """A table for notebooks."""
         rows = [(key, _text(a), _text(b), self._units[key]) for key, (a, b) in self.items()]
-        return html_table(("key", "a", "b", "unit"), rows) if rows else "<p>no difference</p>"
+        return html_table("", ("key", "a", "b", "unit"), rows) if rows else "<p>no difference</p>"
 
     def _lines(self) -> Iterator[str]:
         wide = max(map(len, self), default=0)

@@ -118,15 +118,15 @@ def named_from(table: Any, old: Path, new: Path) -> Any:
     if isinstance(table, list | tuple):
         return [named_from(value, old, new) for value in table]
     if isinstance(table, OwnLaw) and table.file:
-        return f"{_seen_from(new, table.file.resolve())}:{table.name}"
+        return f"{seen_from(new, table.file.resolve())}:{table.name}"
     if is_reference(table):
         file, _, name = table.rpartition(":")
         if (old / file).is_file() and not Path(file).is_absolute():
-            return f"{_seen_from(new, (old / file).resolve())}:{name}"
+            return f"{seen_from(new, (old / file).resolve())}:{name}"
     return table
 
 
-def _seen_from(folder: Path, file: Path) -> str:
+def seen_from(folder: Path, file: Path) -> str:
     """Name of a file as it is seen from a folder."""
     try:
         return Path(os.path.relpath(file, folder)).as_posix()

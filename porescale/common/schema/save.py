@@ -1,6 +1,5 @@
 """A scene as a file: what differs from the defaults, names of files as they are seen from the new place."""
 
-import os
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path, PurePath
@@ -12,7 +11,7 @@ from pydantic import BaseModel
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.messages import sections_in
-from porescale.common.schema.own import named_from, require_files
+from porescale.common.schema.own import named_from, require_files, seen_from
 from porescale.common.schema.scene_file import SCENE_FILE
 from porescale.common.schema.sections import Section, scene_as_dict, try_scene
 from porescale.common.schema.written import plain
@@ -70,7 +69,7 @@ def _moved(table: Mapping[str, Any], section: type[BaseModel], old: Path, new: P
     for name in getattr(section, "files", ()):
         given = table.get(name)
         if isinstance(given, str) and given and not PurePath(given).is_absolute():
-            moved[name] = _seen_from(new, old / given)
+            moved[name] = seen_from(new, old / given)
     for name, field in section.model_fields.items():
         key = field.alias or name
         inner = list(sections_in(field.annotation))
@@ -86,10 +85,3 @@ def _moved(table: Mapping[str, Any], section: type[BaseModel], old: Path, new: P
 def _is_a_place(annotation: Any) -> bool:
     """Whether a field holds sections, not tables of them by name."""
     return get_origin(annotation) is not dict and all(_is_a_place(it) for it in get_args(annotation))
-
-
-def _seen_from(folder: Path, file: Path) -> str:
-    try:
-        return PurePath(os.path.relpath(file, folder)).as_posix()
-    except ValueError:  # on another drive
-        return file.as_posix()

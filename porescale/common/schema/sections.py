@@ -14,23 +14,10 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
 from porescale.common.schema.describe import as_html, in_a_line
 from porescale.common.schema.messages import Key, dotted, nearest, translate
-from porescale.common.schema.quantity import Quantity, Refused, quantity
+from porescale.common.schema.quantity import Quantity as Quantity
+from porescale.common.schema.quantity import Refused as Refused
+from porescale.common.schema.quantity import quantity as quantity
 from porescale.common.schema.written import Source, plain
-
-__all__ = [
-    "LEVELS",
-    "Opened",
-    "Quantity",
-    "Refused",
-    "Section",
-    "load",
-    "of_a_setting",
-    "open_scene",
-    "quantity",
-    "scene_as_dict",
-    "try_scene",
-    "validate",
-]
 
 LEVELS = ("draft", "standard", "fine")
 

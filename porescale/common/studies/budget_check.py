@@ -22,7 +22,7 @@ from porescale.common.duration.expected import besides
 from porescale.common.evidence.benchmarks import Benchmarks, Dtype, Work
 from porescale.common.record.read_card import read_card
 from porescale.common.schema.scene_file import find
-from porescale.common.schema.sections import open_scene, validate
+from porescale.common.schema.sections import load, validate
 from porescale.common.studies.front import Choice, Front, FrontPoint, begun, choose, percent, read_front
 from porescale.common.studies.quantities import measured
 from porescale.common.studies.trade import rms
@@ -78,13 +78,13 @@ def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
     if not chosen.points:
         raise InputError(Fault("--size", which, "is not a point of the front", "", f"1 to {len(front.points)}"))
     point = chosen.points[0]
-    opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
-    more = besides(package.report(opened.scene).work)
-    choice = choose(chosen, point.error, None, lambda _: begun(lambda: package.build(opened.scene), None, more))
-    with tempfile.TemporaryDirectory() as made:
-        folder, before = Path(made) / "run", time.perf_counter()
-        model = package.build(opened.scene)
-        package.drive(model, folder, opened.scene, card=card_of(package, opened), resume=False, quiet=True)
+    made = load(scene, package.scene(), quality=point.quality, overrides=settings(point))
+    more = besides(package.report(made).work)
+    choice = choose(chosen, point.error, None, lambda _: begun(lambda: package.build(made), None, more))
+    with tempfile.TemporaryDirectory() as place:
+        folder, before = Path(place) / "run", time.perf_counter()
+        model = package.build(made)
+        package.drive(model, folder, made, card=card_of(package, made), resume=False, quiet=True)
         took = time.perf_counter() - before
         return compare(choice, took, read_card(folder), *error_of(package, front, point, folder))
 
@@ -126,8 +126,7 @@ def benchmark(package: Package, case: Path) -> Benchmarks:
         scene, which = find(case), size or 1
         points = read_front(scene).points
         point = points[min(which, len(points)) - 1]
-        opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
-        model = package.build(opened.scene)
+        model = package.build(load(scene, package.scene(), quality=point.quality, overrides=settings(point)))
         steps = 50
         model.advance(steps)
         return Work(

@@ -109,13 +109,13 @@ def repeated(
     program: Program, scene: Path, points: Sequence[Point], asked: Repeats, quality: str | None, settings: Sequence[str]
 ) -> list[Point]:
     """Every point as often as is asked, on the same seeds, counted from the scene's own; InputError where it cannot."""
-    from porescale.common.schema.sections import open_scene
+    from porescale.common.schema.sections import load
 
     made: list[Point] = []
     for point in points:
         over = (*settings, *point.settings)
-        opened = open_scene(scene, program.scene(), quality=point.quality or quality, overrides=over)
-        choices = asked.choices(program, opened.scene)
+        read = load(scene, program.scene(), quality=point.quality or quality, overrides=over)
+        choices = asked.choices(program, read)
         keys = {text.partition("=")[0] for text in choices[0]}
         own = sorted(key for key in keys if point.value(key))
         if own:

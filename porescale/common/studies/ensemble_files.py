@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from porescale.common.core.statistics import LEAST, LEVEL, Sample, bootstrap
 from porescale.common.evidence import files
 from porescale.common.studies.ensemble import FAIL, OPEN, Ensemble, Judged, judge
+from porescale.common.studies.quantities import title
 from porescale.common.studies.runner import Ended
 
 NAME = "ensemble"
@@ -113,7 +114,7 @@ def _row(line: Line, *, judged: bool) -> list[str]:
     ends = (
         " … ".join(short(cells[f"bootstrap {end}"]) for end in ("low", "high")) if math.isfinite(it.sample.half) else ""
     )
-    made = [titled(line), str(cells["n"]), with_bar(it), short(cells["standard error"])]
+    made = [title(line.row), str(cells["n"]), with_bar(it), short(cells["standard error"])]
     made += [short(cells["standard deviation"]), ends]
     if judged:
         inside = f"{it.inside} of {cells['n']}" if it.verdict else ""
@@ -125,12 +126,6 @@ def band(line: Line) -> str:
     """What is expected, "" where nothing is."""
     verdict = line.judged.verdict if line.judged else ""
     return f"{short(line.cells['value'])} ± {short(line.cells['tolerance'])}" if verdict else ""
-
-
-def titled(line: Line) -> str:
-    """A quantity with its unit."""
-    name, unit = line.cells["quantity"], line.cells["unit"]
-    return name if not unit or name.endswith(")") else f"{name} ({unit})"
 
 
 def with_bar(it: Judged) -> str:
@@ -161,7 +156,7 @@ def printed(lines: Sequence[Line]) -> list[str]:
     made = [f"{one.of.name}: {one.said()}" for one in found]
     for line in judged or numbers:
         assert line.judged
-        name = f"{line.ensemble.of.name}, {titled(line)}" if len(found) > 1 else titled(line)
+        name = f"{line.ensemble.of.name}, {title(line.row)}" if len(found) > 1 else title(line.row)
         verdict = f"{line.judged.verdict}: " if line.judged.verdict else ""
         expected = f", expected {band(line)}" if line.judged.verdict else ""
         more = f" ({line.cells['remark']})" if line.cells["remark"] else ""

@@ -17,7 +17,7 @@ from typing import Any
 
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.schema.sections import open_scene, scene_as_dict
+from porescale.common.schema.sections import load, scene_as_dict
 from porescale.common.studies.front import Front, FrontPoint, percent, point_of, read_front
 from porescale.common.studies.parameter_table import flat
 from porescale.common.studies.trade import rms
@@ -62,7 +62,7 @@ def compared(package: Package, scene: Path) -> list[Picked]:
         Picked(
             level,
             point,
-            _differences(_opened(package, scene, level, ()), _opened(package, scene, point.quality, point.settings)),
+            _differences(_tables(package, scene, level, ()), _tables(package, scene, point.quality, point.settings)),
         )
         for level, point in picked(read_front(scene)).items()
     ]
@@ -73,8 +73,8 @@ def apart(rows: list[Picked]) -> float:
     return rows[-1].point.core_seconds / rows[0].point.core_seconds
 
 
-def _opened(package: Package, scene: Path, quality: str | None, settings: tuple[str, ...]) -> dict[str, Any]:
-    return scene_as_dict(open_scene(scene, package.scene(), quality=quality, overrides=settings).scene)
+def _tables(package: Package, scene: Path, quality: str | None, settings: tuple[str, ...]) -> dict[str, Any]:
+    return scene_as_dict(load(scene, package.scene(), quality=quality, overrides=settings))
 
 
 def _differences(has: Mapping[str, Any], should: Mapping[str, Any]) -> tuple[str, ...]:

@@ -124,6 +124,12 @@ def wrong(row: Mapping[str, Any]) -> str:
     return ""
 
 
+def title(row: Mapping[str, Any]) -> str:
+    """The name of a number with its unit."""
+    name, unit = str(row["name"]), str(row.get("unit", ""))
+    return name if not unit or name.endswith(")") else f"{name} ({unit})"
+
+
 def _is_number(value: object) -> bool:
     # A whole number may be too large for a float, which isfinite does not bear.
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max

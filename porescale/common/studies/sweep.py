@@ -69,21 +69,22 @@ def check_points(
     program: Program, scene: Path, points: Sequence[Point], quality: str | None, settings: Sequence[str]
 ) -> tuple[Path, str]:
     """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs."""
-    from porescale.common.schema.sections import open_scene
+    from porescale.common.schema.scene_file import find
+    from porescale.common.schema.sections import load
 
     faults: dict[str, Fault] = {}  # by what they say: what is wrong with every point is said of the first
     for point in points:
         try:
             overrides = (*settings, *point.settings)
-            opened = open_scene(scene, program.scene(), quality=point.quality or quality, overrides=overrides)
-            program.report_of(opened)
+            read = load(scene, program.scene(), quality=point.quality or quality, overrides=overrides)
+            program.report_of(read)
         except InputError as error:
             for fault in error.faults:
                 place = f"{point.name}, {fault.file}" if fault.file else point.name
                 faults.setdefault(fault.line(), replace(fault, file=place))
     if faults:
         raise InputError(list(faults.values()))
-    return opened.file, opened.name
+    return find(scene), read.name
 
 
 def expected(scene: Path) -> list[dict[str, Any]]:

@@ -12,7 +12,7 @@ from porescale.common.evidence import files
 from porescale.common.studies import ensemble_files, ensemble_picture
 from porescale.common.studies.ensemble import Ensemble, ensembles
 from porescale.common.studies.parameter_table import Point
-from porescale.common.studies.quantities import TIME, Columns, measured
+from porescale.common.studies.quantities import TIME, Columns, measured, title
 from porescale.common.studies.runner import FINISHED, Ended
 
 NAME = "sweep"
@@ -48,12 +48,6 @@ def line(ended: Ended, keys: Sequence[str], rows: Rows, tables: Tables) -> dict[
         found = number(ended, row, tables) if ended.outcome == FINISHED else math.nan
         made[title(row)] = found if math.isfinite(found) else None
     return made | {"problem": ended.problem}
-
-
-def title(row: Mapping[str, Any]) -> str:
-    """The name of a number with its unit."""
-    name, unit = str(row["name"]), str(row.get("unit", ""))
-    return name if not unit or name.endswith(")") else f"{name} ({unit})"
 
 
 def lines_of(ends: Sequence[Ended], rows: Rows, tables: Tables) -> list[dict[str, Any]]:

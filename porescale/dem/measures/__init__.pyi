@@ -6,5 +6,3 @@ from .energy import energy_budget as energy_budget
 from .network import stiffness as stiffness
 from .network import voigt as voigt
 from .survey import centre_of_mass as centre_of_mass
-
-__all__ = ["CoarseGrained", "Raster", "centre_of_mass", "contacts", "energy_budget", "stiffness", "voigt"]

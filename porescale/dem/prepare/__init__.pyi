@@ -5,5 +5,3 @@ from .rock import Curve as Curve
 from .rock import Kind as Kind
 from .rock import Rock as Rock
 from .rock import load as load
-
-__all__ = ["Compactor", "Curve", "Kind", "Rock", "kept", "load"]

@@ -2,5 +2,3 @@
 from .measure import Settings as Settings
 from .measure import Vectors as Vectors
 from .measure import measure as measure
-
-__all__ = ["Settings", "Vectors", "measure"]

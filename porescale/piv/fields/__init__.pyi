@@ -7,5 +7,3 @@ from .field import in_pixels as in_pixels
 from .of_run import field_of_run as field_of_run
 from .vortices import Vortex as Vortex
 from .vortices import vortices as vortices
-
-__all__ = ["Comparison", "Field", "Vortex", "compare", "field_of_run", "in_metres", "in_pixels", "vortices"]

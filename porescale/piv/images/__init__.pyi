@@ -7,5 +7,3 @@ from .camera import shooting as shooting
 from .synth import Camera as Camera
 from .synth import Pair as Pair
 from .synth import pair as pair
-
-__all__ = ["Camera", "Frame", "Pair", "Shooting", "flows", "frames", "pair", "shooting"]

@@ -14,21 +14,3 @@ from . import sleep as sleep
 from . import stacks as stacks
 from . import threads as threads
 from . import waves as waves
-
-__all__ = [
-    "bodies",
-    "critical_step",
-    "energy",
-    "hertz",
-    "measures",
-    "momentum",
-    "restitution",
-    "rock",
-    "rolling",
-    "segments",
-    "setups",
-    "sleep",
-    "stacks",
-    "threads",
-    "waves",
-]

@@ -1,5 +1,3 @@
 # The public names of porescale.validation.piv: its topics.
 from . import pairs as pairs
 from . import surfaces as surfaces
-
-__all__ = ["pairs", "surfaces"]

@@ -13,27 +13,17 @@ from porescale.cli.main import commands
 from porescale.common.cli.application import main
 from porescale.common.core.errors import InputError, Unstable
 from porescale.common.record.model import Model
+from tests.common.api.small import build, scene_of
 from tests.fingerprints.digest import fingerprint
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, column, dry, refusals, table, water, write
 
 END = 0.004
-SMALL_TANK = {
-    "tank": {"width": 0.2, "height": 0.2},
-    "water": {"column": [{"width": 0.1, "height": 0.1}]},
-    "numerics": {"spacing": 0.01},
-    "time": {"end": 0.02},
-    "output": {"snapshot_interval": 0.01, "series_interval": 0.002},
-}
 
 
 def tank(**changes):
     """A column of 100 particles of water that falls."""
-    return continuum_sph.Scene(**table(SMALL_TANK, **changes))
-
-
-def build(scene):
-    return (porescale if isinstance(scene, porescale.Scene) else continuum_sph).build(scene)
+    return scene_of("tank", **changes)
 
 
 SCENES = {"coupled": lambda: column(time__end=END), "dry": lambda: dry(time__end=END), "tank": tank}

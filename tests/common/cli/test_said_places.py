@@ -5,7 +5,7 @@ import pytest
 from continuum_sph.cli import PACKAGE
 from porescale.common.cli import new
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import open_scene
+from porescale.common.schema.sections import load
 from porescale.common.studies.parameter_table import Point
 from porescale.common.studies.sweep import check_points
 
@@ -32,12 +32,12 @@ series_interval = 1.0
 def test_a_fault_that_a_report_finds_names_where_the_key_stands(tmp_path, settings, place):
     file = tmp_path / "soft.toml"
     file.write_text(SOFT)
-    opened = open_scene(file, PACKAGE.scene(), overrides=settings)
+    scene = load(file, PACKAGE.scene(), overrides=settings)
     with pytest.raises(InputError, match=rf"{place}water\.sound_speed = .* Mach"):
-        PACKAGE.report_of(opened)
+        PACKAGE.report_of(scene)
     with pytest.raises(InputError, match=rf"a, .*{place}water\.sound_speed"):
         check_points(PACKAGE, file, [Point("a", settings)], None, ())
-    PACKAGE.report_of(open_scene(file, PACKAGE.scene(), overrides=["water.sound_speed=30"]))
+    PACKAGE.report_of(load(file, PACKAGE.scene(), overrides=["water.sound_speed=30"]))
 
 
 def test_new_names_its_own_commands_with_the_folder_as_a_shell_takes_it(tmp_path, monkeypatch, capsys):

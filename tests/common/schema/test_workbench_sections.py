@@ -11,13 +11,13 @@ from pydantic import Field, model_validator
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.messages import dotted, every_key, parse_key
+from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.scene_file import assign, holds, merge, parse_setting
 from porescale.common.schema.sections import (
     Quantity,
     Refused,
     Section,
     load,
-    open_scene,
     quantity,
     scene_as_dict,
     validate,
@@ -56,7 +56,7 @@ class Clock(Section):
         return self
 
 
-class Scene(Section):
+class Scene(SceneBase):
     fluid: Fluid | None = None
     grains: tuple[Annotated[Disc | Clump, Field(discriminator="kind")], ...] = ()
     size: Annotated[float, Quantity("m", gt=0)] = 1.0
@@ -115,10 +115,10 @@ def test_quantities_arrive_in_si_at_any_depth(write) -> None:
 def test_a_folder_is_its_scene_toml_and_names_the_scene(write) -> None:
     file = write(GOOD)
     assert load(file.parent, Scene) == load(str(file), Scene)
-    assert open_scene(file.parent, Scene).name == "column"
+    assert load(file.parent, Scene).name == "column"
     single = file.with_name("dam.toml")
     single.write_text(GOOD)
-    assert open_scene(single, Scene).name == "dam"
+    assert load(single, Scene).name == "dam"
 
 
 def test_every_fault_of_a_file_comes_at_once_in_one_line_each(write) -> None:
@@ -229,8 +229,8 @@ def test_later_wins_scene_then_quality_then_settings(write) -> None:
     assert (fine.fluid.spacing, fine.clock.step) == (0.0001, 0.1)
     both = load(file, Scene, overrides=["clock.step=0.3", "clock.duration=4 s"])
     assert (both.clock.step, both.clock.frames, both.clock.duration) == (0.3, 5, 4.0)
-    assert open_scene(file, Scene).quality == "draft"
-    assert open_scene(file, Scene).levels == ("draft", "fine")
+    assert load(file, Scene).source.quality == "draft"
+    assert load(file, Scene).source.levels == ("draft", "fine")
 
 
 def test_an_absent_level_lists_those_it_has(write) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from porescale import Scene, open_run
-from porescale.common.schema.sections import open_scene
+from porescale.common.schema.sections import load
 from porescale.output.case import expected, missed
 from porescale.piv.fields.field import Field
 from porescale.piv.images.synth import Camera
@@ -102,10 +102,7 @@ def test_every_row_of_the_films_is_a_number_that_they_give(collapse):
 
 def test_every_variant_is_a_scene_of_its_own(collapse):
     _, _, sweep = collapse
-    scenes = [
-        open_scene(CASES / it.case, Scene, overrides=it.settings).scene.model_dump_json()
-        for it in sweep.VARIANTS.values()
-    ]
+    scenes = [load(CASES / it.case, Scene, overrides=it.settings).model_dump_json() for it in sweep.VARIANTS.values()]
     assert len(set(scenes)) == len(scenes)
     assert len({sweep.folder_of(it, Path()) for it in sweep.VARIANTS.values()}) == len(scenes)
 

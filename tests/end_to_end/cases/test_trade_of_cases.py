@@ -11,7 +11,7 @@ import pytest
 from continuum_sph.cli import PACKAGE as CONTINUUM
 from porescale.cli.main import PACKAGE as GRAINS
 from porescale.common.core.constants import GRAVITY
-from porescale.common.schema.sections import open_scene
+from porescale.common.schema.sections import load
 from porescale.common.studies.front import read_front
 from porescale.common.studies.trade_plan import read_plan
 from tests.reference.folders import CASES, script
@@ -31,7 +31,7 @@ def test_every_point_of_a_plan_is_a_scene_and_the_front_has_all_of_them(plan):
     points = [point for _, _, point in planned.variants()]
     reference = planned.reference_point()
     for point in [*points, *([reference] if reference else [])]:
-        open_scene(scene, package.scene(), quality=point.quality, overrides=point.settings)
+        load(scene, package.scene(), quality=point.quality, overrides=point.settings)
     kept = {(row["quality"], tuple(row["settings"])) for row in front["points"]}
     assert kept == {(point.quality, point.settings) for point in points}  # else: study trade, and its front.json
     assert [it["name"] for it in front["quantities"]] == [it.name for it in planned.quantity]

@@ -1,22 +1,18 @@
 """A collapse killed while contacts slide and the gate lifts resumes to the same bits; and one thread is two threads."""
 
 import random
-import select
 import signal
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from porescale import build, load, open_run
 from porescale.common.record.checkpoint import read_checkpoint
 from tests.reference.folders import ROOT
 from tests.reference.same_run import contents, differences, state_of
 from tests.reference.scenes import STEPS
-from tests.reference.waiting import done, kill, running, talked, until
+from tests.reference.waiting import done
 
 KILLED = """
 import os, signal, sys
@@ -34,26 +30,6 @@ Coupled.advance = advance
 sys.exit(main())
 """
 """`porescale` in a process that is killed when ``last`` steps are done, wherever its files stand then."""
-SLOWED = """
-import sys, time
-from porescale.cli.main import main
-from porescale.coupling.step import Coupled
-
-hold, step, done = int(sys.argv.pop(1)), Coupled.advance, []
-
-def advance(self):
-    if self.fluid.step == hold:
-        time.sleep(600)
-    if not done:
-        print("first step", flush=True)
-    done.append(1)
-    time.sleep(0.002)
-    step(self)
-
-Coupled.advance = advance
-sys.exit(main())
-"""
-"""`porescale` that says when it begins, takes 2 ms or more for each step, and waits at step ``hold`` to be killed."""
 SAVE = ("--set", "output.checkpoint_seconds=0.001")
 """Saves with every row, at any speed of the machine, so that kills at different steps resume from different ones."""
 GATE = (55, 500)
@@ -119,46 +95,6 @@ def test_killed_five_times_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_p
     assert len(open_run(out).card["resumed"]) == 5
     names = {path.name for path in folder.iterdir()}
     assert {path.name for path in out.iterdir()} == names
-
-
-def written(file: Path) -> int:
-    """When a file was written, ns; 0 where there is none."""
-    return file.stat().st_mtime_ns if file.exists() else 0
-
-
-def killed_by_the_clock(delay: float, hold: int, checkpoint: Path, *words: object) -> int:
-    """Exit code of the command line ``words`` in a process killed ``delay`` seconds after its first new checkpoint, at
-    step ``hold`` at the latest, however long that takes on a busy machine."""
-    command = [sys.executable, "-c", SLOWED, str(hold), *map(str, words)]
-    with running(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        assert until(process, lambda: select.select([process.stdout], [], [], 0.0)[0])
-        assert process.stdout.readline() == b"first step\n"
-        before = written(checkpoint)
-        assert until(process, lambda: written(checkpoint) != before)
-        time.sleep(delay)
-        assert process.poll() is None
-        kill(process)
-        talked(process)
-        return process.returncode
-
-
-@pytest.mark.slow
-def test_killed_at_any_moment_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_path):
-    # Between two steps, as above, no file is half written; by the clock one may be.
-    out, dice = tmp_path / "killed", random.Random(3)
-    reached = []
-    for number in range(2):
-        resume = ("--resume",) if number else ()
-        words = ("run", scene, "--out", out, "--quiet", "--threads", 1, *SAVE, *resume)
-        delay, hold = dice.uniform(0.0, 0.4), (STEPS // 2, STEPS - 50)[number]
-        assert killed_by_the_clock(delay, hold, out / "checkpoint.h5", *words) == -signal.SIGKILL
-        reached.append(read_checkpoint(out / "checkpoint.h5")["step"])  # whole, whenever it was
-        assert all(np.isfinite(it.clouds["grains"].position).all() for it in open_run(out).snapshots())
-    assert 0 < reached[0] < reached[1] < STEPS
-    resumed = [sys.executable, "-m", "porescale", "run", str(scene), "--out", str(out), "--resume", "--quiet"]
-    assert done([*resumed, "--threads", "1"], cwd=ROOT).returncode == 0
-    assert differences(folder, out) == []
-    assert not list(out.rglob(".*writing*"))  # what was half written is gone
 
 
 def test_two_threads_give_the_bits_of_one(folder, scene, porescale, tmp_path):

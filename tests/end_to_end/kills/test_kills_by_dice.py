@@ -40,7 +40,7 @@ def test_that_a_kernel_is_kept_is_seen(tmp_path):
 @pytest.mark.slow
 def test_kills_and_stops_at_any_moment_lose_nothing(tmp_path):
     name = list(SCENES)[SEED % len(SCENES)]
-    made = killed(tmp_path, name, "--kills", 6, "--jobs", 2, "--stops", 2)
+    made = killed(tmp_path, name, "--kills", 6, "--stops", 2)
     assert made["kills"] == 6
     assert made["wrong"] == []
     assert made["scenes"][name]["resumed to the same bits"] > 0

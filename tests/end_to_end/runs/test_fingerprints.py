@@ -81,7 +81,7 @@ def test_all_are_recorded_on_one_thread_and_on_two() -> None:
 
 
 def test_every_place_is_there() -> None:
-    single = (places.MACHINE, places.SET_THREADS, places.CONCLUDE, places.MEASURE, places.OPEN_SCENE)
+    single = (places.MACHINE, places.SET_THREADS, places.CONCLUDE, places.MEASURE, places.READ_SCENE)
     for place in (*single, places.CONTINUUM_TYPE, places.CONTINUUM_BUILD, *places.STEPPERS):
         assert callable(places.fetch(place))
 

@@ -25,7 +25,7 @@ made_at = cache(mark)
 """Date and commit of the campaign: asked for once, since its own record changes the tree."""
 
 
-def record(campaign: str, seed: int | str, ends: Mapping[str, int], found: int, docs: Path = DOCS) -> None:
+def record(campaign: str, seed: int, ends: Mapping[str, int], found: int, docs: Path = DOCS) -> None:
     """Keep what a campaign came to, in place of what the same one (of this commit and seed) came to before."""
     row: dict[str, Any] = {"campaign": campaign, **made_at(), "seed": seed}
     add({**row, "tries": sum(ends.values()), "ends": dict(sorted(ends.items())), "found": found}, docs)

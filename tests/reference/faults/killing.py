@@ -26,7 +26,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -37,7 +36,7 @@ os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
 from porescale.common.record.checkpoint import read_header
 from porescale.common.schema.sections import load
-from tests.reference.faults import campaigns, kill_jobs
+from tests.reference.faults import campaigns, kill_rounds
 from tests.reference.faults.failing_disk import whole
 from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
@@ -207,12 +206,11 @@ class Child:
 
 
 class Campaign:
-    """Kills runs of ``scene`` in ``place``, by the dice of ``seed``.  made : another process has made what nobody kills
-    there, and compiled what it needs."""
+    """Kills runs of ``scene`` in ``place``, by the dice of ``seed``."""
 
-    def __init__(self, name: str, place: Path, seed: int, made: bool = False) -> None:
+    def __init__(self, name: str, place: Path, seed: int) -> None:
         self.package, values = SCENES[name]
-        self.name, self.place, self.dice = name, place, random.Random(f"{name} {seed}")
+        self.place, self.dice = place, random.Random(f"{name} {seed}")
         place.mkdir(parents=True, exist_ok=True)
         self.scene = write(place / f"{name}.toml", values)
         self.marks = Marks(place / "marks")
@@ -220,7 +218,7 @@ class Campaign:
         self.kills: Counter[str] = Counter()
         self.finals, self.pictured = 0, True
         self.warm()
-        for pictured, folder in () if made else self.untouched.items():
+        for pictured, folder in self.untouched.items():
             self.pictured = pictured
             shutil.rmtree(folder, ignore_errors=True)
             assert self.child(folder).wait() == 0
@@ -308,11 +306,6 @@ class Campaign:
         assert code in (0, -signal.SIGKILL), f"a run ended by itself with {code} while {doing}"
         return doing if code else None
 
-    def apart(self, place: Path, seed: int) -> None:
-        """Go on in another folder with other dice, in a process forked from that which made this."""
-        place.mkdir(parents=True, exist_ok=True)
-        self.place, self.marks, self.dice = place, Marks(place / "marks"), random.Random(f"{self.name} {seed}")
-
     def round(self, number: int, most: int, cold: Path | None = None, until: float = math.inf) -> None:
         """A run killed one to sixteen times, at most ``most``, none after ``until``, then resumed to its end."""
         folder = self.place / f"run{number}"
@@ -364,27 +357,21 @@ def main() -> int:
     parser.add_argument("--stops", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=1e9, help="of all; no kill comes later, its run still ends")
-    parser.add_argument("--jobs", type=int, default=1, help="processes side by side, with seeds from --seed on")
     parser.add_argument("--record", action="store_true", help="keep what it came to in docs/develop")
     parser.add_argument("--out", type=Path, default=Path("runs/kills"))
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
     options = parser.parse_args()
-    goal = kill_jobs.Goal(options.kills, options.cold, time.monotonic(), options.seconds, options.seed)
-    begin = [partial(Campaign, name, options.out / name, options.seed) for name in options.scenes]
-    if at_once := options.jobs > 1:
-        for number in [kill_jobs.forked(one) for one in begin]:
-            assert ended(number, COLD_PATIENCE) == 0, "a scene that nobody kills has ended badly"
-    all_of = {name: one(at_once) for name, one in zip(options.scenes, begin, strict=True)}
-    seeds = str(options.seed) + (f" to {options.seed + options.jobs - 1}" if options.jobs > 1 else "")
+    goal = kill_rounds.Goal(options.kills, options.cold, time.monotonic(), options.seconds, options.seed)
+    all_of = {name: Campaign(name, options.out / name, options.seed) for name in options.scenes}
 
     def tell(said: dict[str, Any]) -> None:
         """Say and record what it came to so far."""
-        kill_jobs.report(said, goal)
+        kill_rounds.report(said, goal)
         if options.record:
             name = f"kills of {', '.join(options.scenes)}"
-            campaigns.record(name, seeds, kill_jobs.kinds(said), len(said["wrong"]))
+            campaigns.record(name, options.seed, kill_rounds.kinds(said), len(said["wrong"]))
 
-    said = kill_jobs.side_by_side(all_of, goal, options.out, options.jobs, tell)
+    said = kill_rounds.rounds(all_of, goal, options.out, tell)
     stops = []
     while len(stops) < options.stops:
         found = all_of[options.scenes[len(stops) % len(options.scenes)]].stop(len(stops))

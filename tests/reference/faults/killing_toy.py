@@ -23,15 +23,15 @@ from tests.reference.waiting import ended
 SHORT = {"duration": 0.04, "checkpoint_seconds": 0.0}
 
 
-def child(folder: Path, disk: Disk, pause: float = 0.0) -> int:
-    """A process that runs the toy in ``folder``, resuming if it can; its number."""
+def child(folder: Path, disk: Disk, toy: Toy | None = None) -> int:
+    """A process that runs a toy in ``folder``, resuming if it can; its number."""
     assert threading.active_count() == 1
     process = os.fork()
     if process == 0:
         try:
             faulthandler.enable()
             with failing(disk):
-                run_toy(folder, **SHORT, model=Toy(pause=pause), resume=(folder / "card.json").exists())
+                run_toy(folder, **SHORT, model=toy or Toy(), resume=(folder / "card.json").exists())
         finally:
             os._exit(0)
     return process
@@ -42,9 +42,9 @@ def ended_by_kill(process: int) -> bool:
     return ended(process) == -signal.SIGKILL
 
 
-def resumes_as(folder: Path, untouched: Path) -> None:
+def resumes_as(folder: Path, untouched: Path, varying: bool = False) -> None:
     """AssertionError unless the run of ``folder``, resumed, ends as the one of ``untouched``."""
-    run_toy(folder, **SHORT, resume=(folder / "card.json").exists())
+    run_toy(folder, **SHORT, model=Toy(varying=varying), resume=(folder / "card.json").exists())
     assert differences(folder, untouched) == []
     assert not list(folder.rglob(".*writing*"))
 
@@ -62,18 +62,19 @@ def at_calls(place: Path, untouched: Path, when: str, first: int, every: int) ->
 
 
 def at_moments(place: Path, untouched: Path, kills: int) -> int:
-    """Kill runs ``kills`` times or a few more, at moments of the clock; how often."""
+    """Kill runs ``kills`` times or a few more, at moments of the clock, every other one of varying steps; how often."""
     dice = random.Random(1)
+    run_toy(varied := place / "varied", **SHORT, model=Toy(varying=True))
     made = number = 0
     while made < kills:
-        folder = place / f"run{number}"
+        folder, varying = place / f"run{number}", number % 2 == 1
         for _ in range(dice.randrange(1, 6)):  # again and again in one folder: while it resumes, too
-            process = child(folder, Disk(folder), pause=5e-4)
+            process = child(folder, Disk(folder), Toy(pause=5e-4, varying=varying))
             time.sleep(dice.uniform(0.0, 0.12))
             os.kill(process, signal.SIGKILL)
             made += ended_by_kill(process)
             whole(folder)
-        resumes_as(folder, untouched)
+        resumes_as(folder, varied if varying else untouched, varying)
         number += 1
     return made
 

@@ -28,7 +28,7 @@ from porescale.common.cli.package import Package
 from porescale.common.core.errors import InputError
 from porescale.common.schema.json_schema import scene_schema
 from porescale.common.schema.scene import SceneBase
-from porescale.common.schema.sections import open_scene, scene_as_dict, validate
+from porescale.common.schema.sections import load, scene_as_dict, validate
 from tests.reference.faults import campaigns
 from tests.reference.folders import CASES
 
@@ -164,7 +164,7 @@ def sources() -> list[tuple[Path, Package, dict[str, Any]]]:
     for file in sorted(CASES.glob("*/scene.toml")):
         for package in (PORESCALE, CONTINUUM):
             try:
-                table = given(scene_as_dict(open_scene(file, package.scene()).scene))
+                table = given(scene_as_dict(load(file, package.scene())))
             except InputError:
                 continue
             packing = (table.get("grains") or {}).get("packing")

@@ -1,7 +1,6 @@
-"""Kills by several processes side by side, each in a folder of its own, and what they came to together."""
+"""Rounds of kills until there are as many as asked for, or no time is left, and what they came to."""
 
 import json
-import os
 import sys
 import time
 import traceback
@@ -14,8 +13,6 @@ from typing import Any
 from porescale.common.core.atomic import write_text
 
 Tell = Callable[[dict[str, Any]], object]
-LOOK = 5.0
-"""Seconds between looks at what the processes have done."""
 MOST_WRONG = 10
 """Rounds gone wrong after which there is nothing to be learnt from another."""
 COLD_UNTIL = 0.6
@@ -32,11 +29,6 @@ class Goal:
     began: float
     seconds: float
     seed: int
-
-    def share(self, job: int, jobs: int) -> "Goal":
-        """What process ``job`` of so many does of it."""
-        one = [(total + job) // jobs for total in (self.kills, self.cold)]
-        return Goal(one[0], one[1], self.began, self.seconds, self.seed + job)
 
     def over(self, share: float = 1.0) -> bool:
         """Whether this share of the time has passed."""
@@ -70,71 +62,6 @@ def rounds(all_of: Mapping[str, Any], goal: Goal, place: Path, tell: Tell = lamb
             wrong.append(f"{names[number % len(names)]}, round {number}: {error}")
             traceback.print_exc()
         number += 1
-
-
-def side_by_side(all_of: Mapping[str, Any], goal: Goal, place: Path, jobs: int, tell: Tell) -> dict[str, Any]:
-    """The same by ``jobs`` processes forked from this one, each with its share of the goal and other dice.
-
-    tell : is told what they came to so far, now and then
-    """
-    if jobs == 1:
-        return rounds(all_of, goal, place, tell)
-    folders = [place / f"job{job}" for job in range(jobs)]
-    running = {}
-    for job, folder in enumerate(folders):
-        (folder / "kills.json").unlink(missing_ok=True)
-
-        def work(job: int = job, folder: Path = folder) -> None:
-            for name, each in all_of.items():
-                each.apart(folder / name, goal.seed + job)
-            rounds(all_of, goal.share(job, jobs), folder)
-
-        running[forked(work)] = job
-    lost = []
-    while running:
-        time.sleep(LOOK)
-        for number in list(running):
-            ended, status = os.waitpid(number, os.WNOHANG)
-            if ended:
-                job = running.pop(number)
-                lost += [f"process {job} ended with {status}"] * bool(status)
-        said = together(folders, goal.seed)
-        said["wrong"] += lost
-        write_text(place / "kills.json", json.dumps(said, indent=1))
-        tell(said)
-    return said
-
-
-def forked(work: Callable[[], object]) -> int:
-    """Number of a process forked from this one that does some work and ends, with 1 where that raised."""
-    number = os.fork()
-    if number == 0:
-        code = 1
-        try:
-            work()
-            code = 0
-        except BaseException:
-            traceback.print_exc()
-        finally:
-            os._exit(code)
-    return number
-
-
-def together(folders: list[Path], seed: int) -> dict[str, Any]:
-    """The sum of what kills.json says in each of the ``folders`` in which there is one."""
-    parts = [json.loads(file.read_text()) for folder in folders if (file := folder / "kills.json").exists()]
-    scenes: dict[str, dict[str, Any]] = {}
-    for part in parts:
-        for name, one in part["scenes"].items():
-            so_far = scenes.setdefault(name, {"kills": {}, "resumed to the same bits": 0})
-            so_far["kills"] = dict(Counter(so_far["kills"]) + Counter(one["kills"]))
-            so_far["resumed to the same bits"] += one["resumed to the same bits"]
-    return {
-        "seed": seed,
-        "kills": sum(part["kills"] for part in parts),
-        "scenes": scenes,
-        "wrong": [text for part in parts for text in part["wrong"]],
-    }
 
 
 def kinds(said: Mapping[str, Any]) -> Counter[str]:
