@@ -8,5 +8,3 @@ from .parameters import SoilLaw as SoilLaw
 from .state import Soil as Soil
 from .stress import XX as XX
 from .stress import YY as YY
-
-__all__ = ["XX", "YY", "Material", "Rate", "Soil", "SoilFlow", "SoilLaw", "porosity", "table"]

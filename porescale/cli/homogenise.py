@@ -62,15 +62,15 @@ def homogenise(
     from porescale.analysis.homogenise import lambda_error, section_of, specimen
     from porescale.analysis.material import known
     from porescale.builders.scene import Scene as SceneType
-    from porescale.common.schema.sections import open_scene
+    from porescale.common.schema.sections import load
     from porescale.common.studies.runner import Campaign
     from porescale.demseg.convert import toml
 
-    opened = open_scene(start, SceneType, quality=quality, overrides=settings or ())
-    test = specimen(opened.scene)
-    request = section_of(opened.scene)
+    read = load(start, SceneType, quality=quality, overrides=settings or ())
+    test = specimen(read)
+    request = section_of(read)
     aim = None if until is None else _aim(until)
-    folder = output_folder(out, f"{opened.name}_soil")
+    folder = output_folder(out, f"{read.name}_soil")
     campaign = Campaign("porescale", folder / SPECIMEN, folder / "specimens", threads=threads or 1, again=again)
     enlist(campaign, jobs, scheduler)
     _specimen_file(folder, toml(test))
@@ -82,8 +82,8 @@ def homogenise(
         if code := conclude(ends):
             say(f"no material file: finish these first, by the same command in {folder}")
             return code
-        rows = _numbers(opened.scene, ends, request.cells)
-        found = known(rows, lambda_error(opened.scene))
+        rows = _numbers(read, ends, request.cells)
+        found = known(rows, lambda_error(read))
         more = 0 if aim is None else _more(found, *aim)
         if not more:
             break
@@ -95,7 +95,7 @@ def homogenise(
         *laid_over(quality, settings),
         *(["--until", until] if until else []),
     ]
-    print(write(folder, opened.scene, shlex.join(words), ends, rows))
+    print(write(folder, read, shlex.join(words), ends, rows))
     return 0
 
 

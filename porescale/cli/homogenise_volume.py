@@ -76,12 +76,12 @@ def volume(
     .png; what was stopped goes on when called again.
     """
     from porescale.builders.scene import Scene as SceneType
-    from porescale.common.schema.sections import open_scene
+    from porescale.common.schema.sections import load
     from porescale.common.studies.parameter_table import varied
 
     start = require_scene(scene, "porescale")
     ladders = [varied([text]) for text in vary or USUAL]
-    name = open_scene(start, SceneType, quality=quality, overrides=settings or ()).name
+    name = load(start, SceneType, quality=quality, overrides=settings or ()).name
     folder = output_folder(out, f"{name}_{NAME}")
     rows: list[Seen] = []
     for ladder in ladders:

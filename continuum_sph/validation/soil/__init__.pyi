@@ -6,5 +6,3 @@ from . import fast_flow as fast_flow
 from . import run_outs as run_outs
 from . import setups as setups
 from . import slopes as slopes
-
-__all__ = ["bodies", "element", "energy", "fast_flow", "run_outs", "setups", "slopes"]

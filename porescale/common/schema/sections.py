@@ -1,9 +1,9 @@
 """Scenes are data: typed sections, read from TOML with every fault of a file reported at once."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, ClassVar, Generic, TypeVar, get_args
+from typing import Any, ClassVar, TypeVar, get_args
 
 import pydantic
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -159,22 +159,6 @@ def _is_plain_number(field: FieldInfo) -> bool:
 S = TypeVar("S", bound=Section)
 
 
-@dataclass(frozen=True)
-class Opened(Generic[S]):
-    """A scene and where it came from.
-
-    file : the TOML file;  name : the scene's name;  quality : chosen level or None;  levels : those it has;
-    settings : the `--set` entries.
-    """
-
-    scene: S
-    file: Path
-    name: str
-    quality: str | None
-    levels: tuple[str, ...]
-    settings: tuple[str, ...]
-
-
 def validate(scene_type: type[S], table: Mapping[str, Any], *, file: str = "", folder: Path | None = None) -> S:
     """``table`` as a scene; InputError with all its faults, each naming ``file``.
 
@@ -198,18 +182,11 @@ def try_scene(
 
 
 def load(path: str | Path, scene_type: type[S], *, quality: str | None = None, overrides: Sequence[str] = ()) -> S:
-    """The scene at ``path``, a TOML file or a folder with scene.toml.
+    """The scene at ``path``, a TOML file or a folder with scene.toml.  Later wins: scene, quality level, overrides.
 
     quality : level, None for the file's ``quality_default`` or none;  overrides : ``section.key=value``.
     Raises InputError with every fault of the file, its quality levels (chosen or not) and the overrides.
     """
-    return open_scene(path, scene_type, quality=quality, overrides=overrides).scene
-
-
-def open_scene(
-    path: str | Path, scene_type: type[S], *, quality: str | None = None, overrides: Sequence[str] = ()
-) -> Opened[S]:
-    """`load`, with what a command needs besides.  Later wins: scene, quality level, overrides."""
     file = scene_file.find(Path(path))
     table = scene_file.read(file)
     _require_own_program(scene_type, table, file)
@@ -230,9 +207,9 @@ def open_scene(
         faults += [_in_level(key, fault, other, levels[other]) for key, fault in own]
     if faults or scene is None:
         raise InputError(faults).in_file(str(file))
-    opened = Opened(scene, file, scene_file.name_of(file), level, tuple(levels), tuple(overrides))
-    scene._remember(chosen, Source(file, file.parent.absolute(), opened.name, level, opened.levels, opened.settings))
-    return opened
+    name = scene_file.name_of(file)
+    scene._remember(chosen, Source(file, file.parent.absolute(), name, level, tuple(levels), tuple(overrides)))
+    return scene
 
 
 def _require_own_program(scene_type: type[Section], table: Mapping[str, Any], file: Path) -> None:
