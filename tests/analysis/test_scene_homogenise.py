@@ -156,8 +156,12 @@ def test_what_cannot_be_homogenised_is_refused(changes, said):
 
 
 @pytest.mark.parametrize(
-    "changes", [{"pressure": 0}, {"packings": 1}, {"grains": 10}, {"strain": 2}, {"cels": 3}, {"aspect_ratio": 5}]
-)
+    "changes",
+    [
+        {"pressure": 0}, {"packings": 1}, {"grains": 10}, {"strain": 2}, {"cels": 3}, {"aspect_ratio": 5},
+        {"rates": [0.1, 0.2, 0.3]}, {"rates": [0.1, 0.1, 0.2, 0.3]}, {"rates": [0.1, 0.2, 0.3, 2.0]}, {"rates": 0.1},
+    ],
+)  # fmt: skip
 def test_wrong_keys_are_refused(changes):
     with pytest.raises(InputError, match="homogenise"):
         column(homogenise=changes)
