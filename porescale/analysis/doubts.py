@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from porescale.analysis.material import UNITS, Known, elastic
-from porescale.analysis.shear_rate import AT_REST, GROWTH, HALFWAY, handed_over, law, point
+from porescale.analysis.shear_rate import AT_REST, FASTEST_ANGLE, GROWTH, HALFWAY, handed_over, law, point
 from porescale.common.core.statistics import LEAST
 
 USUAL = 4
@@ -76,7 +76,7 @@ def rate_doubts(found: Mapping[str, Known], rates: Sequence[float], inertial: Se
         cause = "friction grows along a line, at once or not at all"
         return [f"no law of rate is handed over: {cause}; faster homogenise.rates, or more packings"]
     made = []
-    for name in (GROWTH, HALFWAY):
+    for name in (GROWTH, HALFWAY, FASTEST_ANGLE):
         it = found[name]
         if not it.mean > 0.0 or it.interval >= it.mean:
             made.append(f"{name} {it.text()} is not resolved: faster homogenise.rates, or more packings")

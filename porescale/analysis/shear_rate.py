@@ -159,8 +159,9 @@ def inertial_numbers(tests: Sequence[Sequence[Steady]]) -> Floats:
 def known_law(tests: Sequence[Sequence[Steady]]) -> dict[str, Known]:
     """The LAW through the means of all packings, with intervals; empty where it has none, or no angle.
 
-    values : the jackknife's, n of all packings less n - 1 of all but one, so that mean and standard error are those of
-    the jackknife (Tukey 1958, Ann. Math. Stat. 29, 614): one packing alone may have no I0.
+    values : that of all packings, and about it the jackknife's, n of all less n - 1 of all but one, less their mean:
+    mean is the fit, standard error that of the jackknife (Tukey 1958, Ann. Math. Stat. 29, 614).  One packing alone may
+    have no I0.
     """
     count = len(tests)
     inertial = np.array([[it.inertial for it in each] for each in tests])
@@ -175,7 +176,8 @@ def known_law(tests: Sequence[Sequence[Steady]]) -> dict[str, Known]:
 
     whole = list(range(count))
     every = of(whole)
-    values = np.array([count * every - (count - 1) * of([j for j in whole if j != k]) for k in whole])
+    without = np.array([of([j for j in whole if j != k]) for k in whole])
+    values = every - (count - 1) * (without - without.mean(axis=0))
     if not np.isfinite(values).all():
         return {}
     return {name: Known(tuple(values[:, k].tolist()), unit) for k, (name, unit) in enumerate(LAW.items())}

@@ -94,6 +94,13 @@ def test_discs_reach_the_critical_state_of_the_paper_and_discs_without_friction_
     assert abs(verify.critical_angle(0.0, 1) - row.reference) > 3 * row.tolerance
 
 
+@pytest.mark.slow
+def test_discs_in_fast_shear_have_the_friction_of_the_paper_and_at_half_the_rate_they_have_not():
+    row = VALIDATIONS["scene.friction_of_discs_in_fast_shear"].run()
+    assert row.passed, row
+    assert abs(verify.stress_ratio(0.1, 1) - row.reference) > 2 * row.tolerance
+
+
 def test_pressure_is_what_is_asked_else_the_packings_else_the_weights():
     # half of a height of 5.5 mm at a packing fraction of 0.7: wet grains of 2500 kg/m³ weigh 1500 kg/m³ times g
     wet = column()
