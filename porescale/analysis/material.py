@@ -8,7 +8,8 @@ format          1
 [rate]          where homogenise.rates asks for it: grain_diameter, friction_angle of the fastest shear, inertial_number
                 I0 of half the growth, see shear_rate.py
 [measured.…]    mean, interval (half of that at 95 %, by Student's t, with what is systematic), systematic (lattice and
-                lambda), standard_error, deviation of one packing, values, unit, of each number
+                lambda), standard_error, deviation of one packing, values, unit, of each number; values of the law of
+                [rate] are the jackknife's
 [made]          by what, of what, how: version, commit, scene, seeds, lambda, cells, grains, pressure …; doubts
 """
 

@@ -38,7 +38,7 @@ WIDE = 10.0
 """I0 is sought from the slowest rate over this to the fastest times this: beyond it the law is a step or a line."""
 STEPS = 400
 """Values of I0 that are tried before the best is refined."""
-AT_REST, FASTEST_ANGLE = "friction angle of slow shear", "friction angle of the fastest shear"
+AT_REST, FASTEST_ANGLE = "slow shear friction angle", "fastest shear friction angle"
 GROWTH, HALFWAY = "growth of the sine with rate", "inertial number of half the growth"
 LAW = {AT_REST: "rad", FASTEST_ANGLE: "rad", GROWTH: "", HALFWAY: ""}
 """Numbers of the law and their units: asin s0, asin(s0 + Δ), Δ, I0."""
