@@ -8,6 +8,7 @@ import pydantic
 from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import Origin
+from continuum_sph.scene.rate import RateSection
 from continuum_sph.scene.suction import SuctionSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
@@ -135,6 +136,7 @@ class SoilSection(Section):
     body: tuple[Body, ...] = pydantic.Field(min_length=1, description="pieces of ground")
     watch: tuple[Watch, ...] = pydantic.Field(default=(), description="parts of it whose displacement is recorded")
     suction: SuctionSection | None = None
+    rate: RateSection | None = None
     numerics: SoilNumerics = SoilNumerics()
 
     @classmethod
@@ -165,6 +167,8 @@ class SoilSection(Section):
         if self.stress == "unconsolidated" and (not self.saturated or self.held):
             repair = 'give soil.saturated = true and soil.held = false, or stress "geostatic"'
             found.append(Fault("soil.stress", self.stress, "is of ground with full pores that may move", repair=repair))
+        if self.rate:
+            found += self.rate.faults(self)
         if self.dilatancy_angle > self.friction_angle:
             found.append(
                 Fault("soil.dilatancy_angle", self.dilatancy_angle, "makes soil that gives energy as it shears",

@@ -134,7 +134,7 @@ class SoilFlow:
         self.update_walls()
         choices = Choices(
             *law.gravity, law.damping, law.printed_damping, law.diffusion, law.sound_diffusion * self.sound_rate,
-            law.spacing_recovery, law.spacing,
+            law.spacing_recovery, law.parted(self.strained), law.spacing,
         )  # fmt: skip
         accelerate(
             soil.soil, soil.record, soil.facing, soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift,

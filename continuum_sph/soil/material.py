@@ -8,6 +8,10 @@ stress ratio K0 = (B - G)/(B + G): ν/(1-ν) in plane strain, ν with the modulu
 Strength: τ_f = p sin φ + c cos φ for the radius τ of Mohr's circle in the plane, Mohr-Coulomb while σ_zz lies between
 the other two.  That of Maeda & Sakai 2004, τ_f = p tan φ_d, is the same with
 sin φ = tan φ_d: their 0.5 is φ = 30°.
+
+Grains that are sheared fast rub more.  With the inertial number I = γ' d √(ρs/p), γ' the rate of shear strain, d and ρs
+diameter and density of the grains, sin φ(I) = sin φ + (sin φ∞ - sin φ) I/(I0 + I) (Jop, Forterre & Pouliquen,
+Nature 441 (2006) 727, whose μ is τ/p).  A soil without a `Rate` has none of it.
 """
 
 import math
@@ -17,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.ranges import Range, require_in_range
 from porescale.common.core.types import Floats
 
@@ -34,9 +39,12 @@ from porescale.common.core.types import Floats
     YIELDS,
     DENSITY,
     GRAINS,
-) = range(13)
+    RATE_STRENGTH,
+    RATE_PACE,
+) = range(15)
 """Columns of the table: B/E and G/E, dσ_zz/dp; m; p0 Pa; least p for stiffness, Pa; sin φ; c cos φ, Pa; sin ψ; largest
-tension, Pa; 1 if it yields; density at the start, share of grains 1 - n at the start.  B and G are times E0."""
+tension, Pa; 1 if it yields; density at the start, share of grains 1 - n at the start; sin φ of the fastest flow less
+sin φ; rate of shear over √p at which half of that is there, 1/(s √Pa).  B and G are times E0."""
 
 
 MODULI = ("plane strain", "printed")
@@ -49,13 +57,35 @@ RANGES = {
 """What the numbers of a material may be: moduli are positive and finite at -1 < ν < 1/2."""
 
 
+RATE_RANGES = {
+    "grain_diameter": Range("m", gt=0), "inertial_number": Range(gt=0), "sin_friction": Range(ge=0, le=1)
+}  # fmt: skip
+"""What the numbers of a rate may be."""
+
+
+@dataclass(frozen=True)
+class Rate:
+    """How friction grows with the rate of shear.
+
+    sin_friction : sin φ∞ of the fastest flow;  inertial_number : I0, at which half of the growth is there;
+    grain_diameter : d, m.  Raises InputError for values that no grains have, see RATE_RANGES.
+    """
+
+    sin_friction: float
+    inertial_number: float
+    grain_diameter: float
+
+    def __post_init__(self) -> None:
+        require_in_range("material.rate", vars(self), RATE_RANGES)
+
+
 @dataclass(frozen=True)
 class Material:
     """stiffness : E0, Pa at the mean stress ``reference`` (p0, Pa);  exponent : m;  poisson : ν;  modulus : "plane
     strain" or "printed";  sin_friction : sin φ;  cohesion_intercept : c cos φ, Pa;  sin_dilatancy : sin ψ;
     tension : largest, Pa;  yields : else elastic for ever;  density : of grains per whole volume at the start, kg/m³;
-    porosity : n then;  least : mean stress (Pa) below which soil gets no softer.  Raises InputError for values that no
-    material has, see RANGES.
+    porosity : n then;  least : mean stress (Pa) below which soil gets no softer;  rate : how friction grows with the
+    rate of shear, None where it does not.  Raises InputError for values that no material has, see RANGES.
     """
 
     stiffness: float
@@ -71,9 +101,13 @@ class Material:
     tension: float = 0.0
     yields: bool = True
     porosity: float = 0.4
+    rate: Rate | None = None
 
     def __post_init__(self) -> None:
         require_in_range("material", vars(self), RANGES, {"modulus": MODULI})
+        if self.rate and self.rate.sin_friction < self.sin_friction:
+            problem, limits = "is less than at rest", f">= {self.sin_friction:g}"
+            raise InputError(Fault("material.rate.sin_friction", self.rate.sin_friction, problem, "", limits))
 
     @property
     def printed(self) -> bool:
@@ -110,24 +144,29 @@ class Material:
         return float(self.stiffness * (max(pressure, self.least) / self.reference) ** self.exponent)
 
     def row(self) -> Floats:
-        """The material's row of the table that kernels take, (13,)."""
+        """The material's row of the table that kernels take, (15,)."""
         across = 0.0 if self.printed else 2.0 * self.poisson
         # Tension beyond the tip of the cone, c cot φ, cannot be.
         tension = min(
             self.tension, self.cohesion_intercept / self.sin_friction if self.sin_friction > 0.0 else math.inf
         )
+        growth, pace = 0.0, 0.0
+        if self.rate:
+            growth = self.rate.sin_friction - self.sin_friction
+            grains = self.density / (1.0 - self.porosity)
+            pace = self.rate.inertial_number / (self.rate.grain_diameter * math.sqrt(grains))
         return np.array(
             [
                 self.area_modulus * self.stiffness, self.shear_modulus * self.stiffness, across, self.exponent,
                 self.reference, self.least, self.sin_friction, self.cohesion_intercept, self.sin_dilatancy, tension,
                 float(self.yields),
-                self.density, 1.0 - self.porosity,
+                self.density, 1.0 - self.porosity, growth, pace,
             ]
         )  # fmt: skip
 
 
 def table(materials: tuple[Material, ...]) -> Floats:
-    """The table of all materials, (m, 13)."""
+    """The table of all materials, (m, 15)."""
     return np.array([material.row() for material in materials])
 
 

@@ -13,7 +13,10 @@ Zig-zags in stress cause no force and persist too.  Stress diffuses, dσ_i/dt = 
 at the rate of shear strain γ' (mean of the pair), not of sound as in Feng, Fourtakas, Rogers & Lombardi,
 Comput. Geotech. 138 (2021) 104356 and its kin: what is smoothed at the rate of sound must be strained anew for ever to
 carry its weight, so soil at rest creeps.  In the same way particles nearer than a spacing are moved apart, by x_ij A γ'
-(1 - r²/spacing²), only while soil is sheared, and away from walls.  Both are opposite in a pair of soil.
+(1 - r²/spacing²), only while soil is sheared, and away from walls.  Both are opposite in a pair of soil.  Each has its
+own bound on γ' Δt, `parameters.SoilLaw.most` and `PARTED`: diffusion is far the stiffer, and particles that parted at
+its bounded rate would crowd where soil shears fast, on the floor of a layer that slides (a third in 4 s on 32°), as no
+density of theirs shows it.
 
 Volumes diffuse as stress does, dV_i/dt = -χ h² γ' spacing² Σ (V_j - V_i) (1/r) W'.  Stress that diffuses no longer
 shows how much a particle is compressed, so nothing would resist: where soil slides far its density would grow without
@@ -73,7 +76,8 @@ SOFTENING = 0.01  # of h²: keeps the quotient finite when two centres coincide
 
 class Choices(NamedTuple):
     """gx, gy: gravity, m/s²;  damping: α;  printed: damping as eq. 36;  diffusion: χ;  sound_diffusion: the same by
-    sound, 1/s;  spacing_recovery: A;  spacing of the particles, m."""
+    sound, 1/s;  spacing_recovery: A;  fastest: rate of shear strain up to which particles part, 1/s;  spacing of the
+    particles, m."""
 
     gx: Any
     gy: Any
@@ -82,6 +86,7 @@ class Choices(NamedTuple):
     diffusion: Any
     sound_diffusion: Any
     spacing_recovery: Any
+    fastest: Any
     spacing: Any
 
 
@@ -131,6 +136,7 @@ def soil_forces(i, record, stress, near, choices):
     txx, txy, tyx, tyy = record[i, TXX], record[i, TXY], record[i, TYX], record[i, TYY]
     gxx, gxy, gyx, gyy = record[i, GXX], record[i, GXY], record[i, GYX], record[i, GYY]
     xx, yy, xy, zz = stress[i, XX], stress[i, YY], stress[i, XY], stress[i, ZZ]
+    fastest, shearing = choices.fastest, parting_rate(i, record, choices)
     bx, by, wx, wy, grown = zeros(), zeros(), zeros(), zeros(), zeros()
     rxx, ryy, rxy, rzz, around, crowd = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
     k, end = near.start[i], near.split[i]
@@ -160,12 +166,21 @@ def soil_forces(i, record, stress, near, choices):
         ryy += part * (yy_j - yy)
         rxy += part * (xy_j - xy)
         rzz += part * (zz_j - zz)
-        close = rate * maximum(1.0 - distance2 * inverse_spacing2, 0.0)
+        stretching_j, sliding_j = gxx_j - gyy_j, gxy_j + gyx_j
+        shearing_j = minimum(sqrt(stretching_j * stretching_j + sliding_j * sliding_j), fastest)
+        close = (shearing + shearing_j) * maximum(1.0 - distance2 * inverse_spacing2, 0.0)
         wx += close * dx
         wy += close * dy
     diffused = (reduce_add(rxx), reduce_add(ryy), reduce_add(rxy), reduce_add(rzz))
     pushed = (reduce_add(bx), reduce_add(by), reduce_add(wx), reduce_add(wy))
     return pushed, diffused, reduce_add(grown), 0.5 * reduce_add(around), reduce_add(crowd)
+
+
+@inline
+def parting_rate(i, record, choices):
+    """Rate of shear strain (1/s) at which particle i parts from those that are too near: its own, up to a bound."""
+    stretching, sliding = record[i, GXX] - record[i, GYY], record[i, GXY] + record[i, GYX]
+    return min(choices.fastest, np.sqrt(stretching * stretching + sliding * sliding))
 
 
 @inline
@@ -188,6 +203,7 @@ def with_wall_forces(i, record, facing, stress, near, choices, sums, around):
     inverse_spacing2 = 1.0 / (choices.spacing * choices.spacing)
     linear, most = undamped(choices.printed)
     own = record[i, VOLUME] / record[i, MASS]
+    shearing = parting_rate(i, record, choices)
     for w in range(np.uint64(near.split[i]), np.uint64(near.start[i + 1])):
         j = np.uint64(near.partner[w])
         dx = image(record[i, X] - record[j, X], near.period_x)
@@ -209,7 +225,7 @@ def with_wall_forces(i, record, facing, stress, near, choices, sums, around):
         ax += damping_term * dx - stress_term * (txx * dx + txy * dy)
         ay += damping_term * dy - stress_term * (tyx * dx + tyy * dy)
         around -= record[j, VOLUME] * slope * (0.5 * (stress[j, XX] + stress[j, YY]) - own_p)
-        close = 2.0 * record[i, SHEAR_RATE] * max(0.0, 1.0 - distance2 * inverse_spacing2)
+        close = 2.0 * shearing * max(0.0, 1.0 - distance2 * inverse_spacing2)
         ux += close * dx
         uy += close * dy
     return ax, ay, ux, uy, around

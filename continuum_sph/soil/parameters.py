@@ -12,6 +12,9 @@ DAMPED = 0.8
 """Longest step over h/(α c).  Damping takes λ dt of a zig-zag of velocity in a step, with the velocities before it, so
 beyond 2 it swings ever wider.  Over all waves on a square lattice λ is at most 2.19 α c/h (Wendland C2, h = 1 to 2
 spacings; the spline 1.97): 0.91 h/(α c).  What is left is for particles that crowd."""
+PARTED = 0.25
+"""Largest A γ' Δt of particles that part.  One between two others, δ nearer to one of them than a spacing, goes back by
+4 A γ' Δt δ: where it was at most, not beyond."""
 RULES = ("sound", "acceleration", "other layers")
 
 
@@ -60,7 +63,7 @@ class SoilLaw:
 
     @property
     def most(self) -> float:
-        """Shear strain of one step that diffusion, and spacing recovery with it, follows.
+        """Shear strain of one step that diffusion follows.
 
         A zig-zag from particle to particle falls by up to 2 · 2π W(0) h² χ = 7 χ times that (W(0) = 7/4πh² of Wendland
         C2, the spline has less), and would swing ever wider beyond 2: σ_zz does, which no strength bounds.  It may
@@ -72,6 +75,11 @@ class SoilLaw:
         """
         left = 1.0 - FALL * self.courant * self.sound_diffusion
         return max(0.0, left) / (FALL * self.diffusion) if self.diffusion > 0.0 else float("inf")
+
+    def parted(self, step: float) -> float:
+        """Rate of shear strain (1/s) up to which particles part in a ``step`` (s)."""
+        taken = self.spacing_recovery * step
+        return PARTED / taken if taken > 0.0 else float("inf")
 
     def limits(self, acceleration: float, sound_rate: float, others: float) -> tuple[float, float, float]:
         """Steps allowed by sound, acceleration (m/s²) and other layers (s), s: eq. 49.

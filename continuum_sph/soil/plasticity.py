@@ -14,6 +14,10 @@ soon as things approach.  σ_zz changes with p as plane strain has it while noth
 Source: Bui, Fukagawa, Sako & Ohno, Int. J. Numer. Anal. Meth. Geomech. 32 (2008) 1537 (there Drucker-Prager, scaled
 back); Jaumann's rate: eq. 45 of Maeda & Sakai 2004.
 
+Where friction grows with the rate of shear (`material`), r - p sin φ - c cos φ is not zero after the step but
+p (sin φ∞ - sin φ) γ'/(γ' + γ0), γ' = dγ/dt, γ0 = √p I0/(d √ρs): with p of the trial in γ0 that is a quadratic in dγ, of
+which one root is positive, so the way back is as exact as without (Dunatunga & Kamrin iterate).
+
 The p of the yield criterion alone is the mean of the particle's surroundings, p̄ = p + ``excess`` of `momentum`.  Noise
 in p that yields by itself is cut off on one side, where r > p sin φ: soil weakens, the more the finer it is.
 """
@@ -25,6 +29,8 @@ from continuum_sph.soil.material import (
     AREA,
     COHESION_INTERCEPT,
     EXPONENT,
+    RATE_PACE,
+    RATE_STRENGTH,
     SHEAR,
     SIN_DILATANCY,
     SIN_FRICTION,
@@ -36,10 +42,28 @@ from porescale.common.compiled.jit import inline
 
 
 @inline
-def returned(p, r, excess, area, shear, row):
+def sheared(beyond, softer, p, dilating, step, row):
+    """Plastic shear strain of a ``step`` (s) by which a trial stress ``beyond`` (Pa) yield comes back to it.
+
+    softer: by what (Pa) that falls for a strain of 1;  p: mean of the surroundings, Pa, of whose friction a share grows
+    with the rate of shear;  dilating: by what (Pa) p grows for a strain of 1;  row: the material's.
+    """
+    growth = row[RATE_STRENGTH]
+    if growth == 0.0:
+        return beyond / softer
+    bearing = max(p, 0.0)
+    pace = row[RATE_PACE] * np.sqrt(bearing) * step  # strain of a step at which half of the growth is there
+    a = softer + dilating * growth
+    b = softer * pace + growth * bearing - beyond
+    root = np.sqrt(b * b + 4.0 * a * beyond * pace)
+    return 2.0 * beyond * pace / (root + b) if b > 0.0 else 0.5 * (root - b) / a
+
+
+@inline
+def returned(p, r, excess, area, shear, step, row):
     """(p, r, dγ, opened): a trial stress (Pa) brought back to yield, shear strain that did not come back and share of
     the volume that came apart;  excess: mean p of the surroundings less p, Pa, never below -p where p > 0;
-    area, shear: B and G, Pa;  row: the material's."""
+    area, shear: B and G, Pa;  step: s;  row: the material's."""
     slope = row[SIN_FRICTION]
     cohesion = row[COHESION_INTERCEPT] + slope * max(excess, -max(p, 0.0))
     dilatancy = row[SIN_DILATANCY]
@@ -47,7 +71,8 @@ def returned(p, r, excess, area, shear, row):
     new_p = p
     new_r = r
     if r > slope * p + cohesion:
-        flow = (r - slope * p - cohesion) / (shear + slope * area * dilatancy)
+        beyond = r - slope * p - cohesion
+        flow = sheared(beyond, shear + slope * area * dilatancy, p + excess, area * dilatancy, step, row)
         new_r = r - shear * flow
         new_p = p + area * dilatancy * flow
         if new_r < 0.0:  # beyond the tip; or by round-off, where the surroundings bear nothing
@@ -100,7 +125,7 @@ def new_stress(stress, excess, gradient, step, opening, row):
     flow = 0.0
     if row[YIELDS] > 0.0:
         r = np.sqrt(s * s + t * t)
-        new_p, new_r, flow, opened = returned(new_p, r, excess, area, shear, row)
+        new_p, new_r, flow, opened = returned(new_p, r, excess, area, shear, step, row)
         if new_r < r:
             s *= new_r / r
             t *= new_r / r

@@ -18,11 +18,12 @@ from continuum_sph.builders.sanity import (
     require_within,
 )
 from continuum_sph.scene.numerics import NumericsSection
+from continuum_sph.scene.rate import RateSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import Body, SoilSection
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
-from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw, porosity
+from continuum_sph.soil import Material, Rate, Soil, SoilFlow, SoilLaw, porosity
 from continuum_sph.soil.parameters import RULES
 from continuum_sph.soil.steadying import WEIGHTLESS, steadied
 from continuum_sph.soil.stress import XX, XY, YY, ZZ
@@ -294,7 +295,13 @@ def material_of(section: SoilSection) -> Material:
         tension=section.tension,
         yields=not section.elastic,
         porosity=section.porosity,
+        rate=rate_of(section.rate) if section.rate else None,
     )
+
+
+def rate_of(section: RateSection) -> Rate:
+    """How the friction of a soil grows with the rate of shear."""
+    return Rate(math.sin(section.friction_angle), section.inertial_number, section.grain_diameter)
 
 
 def damping_of(section: SoilSection, numerics: NumericsSection, steady: float) -> float:

@@ -2,8 +2,9 @@
 from . import bodies as bodies
 from . import element as element
 from . import energy as energy
+from . import fast_flow as fast_flow
 from . import run_outs as run_outs
 from . import setups as setups
 from . import slopes as slopes
 
-__all__ = ["bodies", "element", "energy", "run_outs", "setups", "slopes"]
+__all__ = ["bodies", "element", "energy", "fast_flow", "run_outs", "setups", "slopes"]

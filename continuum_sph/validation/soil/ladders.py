@@ -1,14 +1,16 @@
 """Convergence of soil, at several spacings: the friction of an endless layer that slides, from a strewn lattice, the
-creep of a slope, and how far columns run out."""
+creep of a slope, fast flow, and how far columns run out."""
 
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from continuum_sph.validation.soil.run_outs import BEADS, SAND, Grains, run_outs
+from continuum_sph.soil import Rate
+from continuum_sph.validation.soil import fast_flow
+from continuum_sph.validation.soil.run_outs import BEADS, GLASS, SAND, Grains, run_outs
 from continuum_sph.validation.soil.setups import TAN_PHI
-from continuum_sph.validation.soil.slopes import NEAR, slope, strewn_friction
+from continuum_sph.validation.soil.slopes import NEAR, slope, strewn_friction, sunk
 from porescale.common.evidence.convergence import Ladders
 
 LADDERS = Ladders()
@@ -50,12 +52,44 @@ def creep(rows: float) -> float:
     return slope(NEAR, 5.0, int(rows))
 
 
-def run_out_error(grains: Grains, rows: float) -> float:
-    """Largest |run-out over that of the experiments' law, less 1| of columns of H/L 0.5 to 4."""
-    return float(np.abs(run_outs(grains, int(rows)) - 1.0).max())
+@LADDERS.ladder(
+    "soil.fast_flow",
+    title="Root mean square error of the speeds of a layer on 32° whose friction grows with the rate of shear, over "
+    "that of Bagnold's profile",
+    along="rows of particles",
+    levels=(10, 20, 40),
+    expected=1.0,
+    within=0.1,
+    because="the floor holds half of its row; speeds of strewn particles fluctuate by a hundredth",
+)
+def fast_flow_error(rows: float) -> float:
+    """Of the speeds, 8 s after the layer was let go."""
+    return fast_flow.error(int(rows))
 
 
-for name, what, grains in (("sand", "sand", SAND), ("beads", "glass beads", BEADS)):
+@LADDERS.ladder(
+    "soil.height_of_what_slides",
+    title="By how much the middle of a layer 1 m deep sinks while it slides 8 m on its floor, m",
+    along="rows of particles",
+    levels=(10, 20, 40, 80),
+    because="no order is expected: shear changes no volume; where surface and floor lie is known to half of a row",
+)
+def sinking(rows: float) -> float:
+    """Of a slope of 32°, after 4 s."""
+    return abs(sunk(int(rows)))
+
+
+def run_out_error(grains: Grains, rate: Rate | None, rows: float) -> float:
+    """Largest |run-out over that of the experiments' law, less 1| of columns of H/L 0.5 to 4;  rate : of their
+    friction."""
+    return float(np.abs(run_outs(grains, int(rows), rate) - 1.0).max())
+
+
+for name, what, grains, rate in (
+    ("sand", "sand", SAND, None),
+    ("beads", "glass beads", BEADS, None),
+    ("beads_that_rub", "glass beads of 1 mm whose friction grows with the rate of shear", BEADS, GLASS),
+):
     LADDERS.ladder(
         f"soil.run_out_of_{name}",
         title=f"Largest relative error of the run-outs of columns of {what}, H/L 0.5 to 4, from the experiments' law",
@@ -63,4 +97,4 @@ for name, what, grains in (("sand", "sand", SAND), ("beads", "glass beads", BEAD
         levels=(10, 20, 40, 80),
         because="no order is expected: a law drawn through experiments is no limit; coarse deposits are few "
         "particles deep, and a front is known to half a particle",
-    )(partial(run_out_error, grains))
+    )(partial(run_out_error, grains, rate))

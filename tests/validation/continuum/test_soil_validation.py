@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.soil import Material
-from continuum_sph.validation.soil import bodies, element, energy, run_outs, setups, slopes
+from continuum_sph.soil import Material, Rate, SoilLaw
+from continuum_sph.validation.soil import bodies, element, energy, fast_flow, run_outs, setups, slopes
 from tests.reference.continuum import continuum_cases
 from tests.reference.continuum.continuum_cases import missed
 from tests.reference.folders import script
@@ -68,6 +68,19 @@ def test_soil_that_slides_without_exchanging_volume_is_squeezed_without_end():
     assert slopes.departure(seconds=1.2, exchanged=False) > 10.0 * tolerance(
         "continuum.soil_that_slides_keeps_its_density"
     )
+
+
+@pytest.mark.slow
+def test_soil_whose_particles_part_no_faster_than_stress_diffuses_sinks_into_its_floor(monkeypatch):
+    # 0.031 m after 4 s, and 0.13 m after 6 s: as it was
+    monkeypatch.setattr(SoilLaw, "parted", lambda law, step: law.most / step if step > 0.0 else math.inf)
+    assert slopes.sunk.__wrapped__(20) > tolerance("continuum.soil_that_slides_keeps_its_height")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", [None, Rate(0.8, 0.3, 0.25), Rate(0.76, 0.3, 0.2)])
+def test_soil_of_another_rate_flows_otherwise(rate):
+    assert fast_flow.error(20, rate) > tolerance("continuum.soil_flows_as_bagnold")
 
 
 @pytest.mark.slow

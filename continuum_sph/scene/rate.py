@@ -1,0 +1,33 @@
+"""The section of rate: friction that grows with the rate of shear."""
+
+from typing import TYPE_CHECKING
+
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Section, quantity
+
+if TYPE_CHECKING:
+    from continuum_sph.scene.soil import SoilSection
+
+
+class RateSection(Section):
+    """Friction of grains that are sheared fast, of Jop, Forterre & Pouliquen 2006: see `continuum_sph.soil.material`.
+
+    Glass beads have 32.8 degrees and 0.279, beyond 20.9 at rest.  A material file of `porescale homogenise` with rates
+    has all three.
+    """
+
+    friction_angle: float = quantity("rad", ge=0, le=1.4, help="angle of friction of the fastest flow")
+    inertial_number: float = quantity("", ge=1e-4, le=100, help="I at which half of the growth is there")
+    grain_diameter: float = quantity("m", ge=1e-7, le=10, help="diameter of the grains")
+
+    def faults(self, soil: "SoilSection") -> list[Fault]:
+        """What is wrong with it in a ``soil``."""
+        found = []
+        if self.friction_angle < soil.friction_angle:
+            found.append(Fault("soil.rate.friction_angle", self.friction_angle, "is less than that at rest", "rad",
+                               f">= {soil.friction_angle:g}"))  # fmt: skip
+        for key, there in (("elastic", soil.elastic), ("held", soil.held)):
+            if there:
+                found.append(Fault(f"soil.{key}", True, "leaves nothing that soil.rate could slow",
+                                   repair="take out [soil.rate]"))  # fmt: skip
+        return found
