@@ -38,6 +38,8 @@ WIDE = 10.0
 """I0 is sought from the slowest rate over this to the fastest times this: beyond it the law is a step or a line."""
 STEPS = 400
 """Values of I0 that are tried before the best is refined."""
+STEEPEST = 1.4
+"""Friction angle of the fastest flow (rad) that a continuum takes at most."""
 AT_REST, FASTEST_ANGLE = "slow shear friction angle", "fastest shear friction angle"
 GROWTH, HALFWAY = "growth of the sine with rate", "inertial number of half the growth"
 LAW = {AT_REST: "rad", FASTEST_ANGLE: "rad", GROWTH: "", HALFWAY: ""}
@@ -184,11 +186,11 @@ def known_law(tests: Sequence[Sequence[Steady]]) -> dict[str, Known]:
 
 
 def handed_over(found: Mapping[str, Known]) -> bool:
-    """Whether a continuum can take the law over: friction grows, by more than its bars where there are any."""
+    """Whether a continuum can take the law over: friction grows, by more than its bars where there are any, to an angle
+    between that of the slow tests and STEEPEST."""
     if HALFWAY not in found:
         return False
-    fast = found[FASTEST_ANGLE].mean
-    return 0.0 < fast < 0.5 * math.pi and all(
+    return found["critical friction angle"].mean < found[FASTEST_ANGLE].mean <= STEEPEST and all(
         found[name].mean > 0.0 and not found[name].interval >= found[name].mean for name in (GROWTH, HALFWAY)
     )
 

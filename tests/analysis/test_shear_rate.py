@@ -96,6 +96,7 @@ def test_a_law_that_its_bars_resolve_leaves_nothing_to_doubt():
         ([0.25 + 0.5 * rate for rate in RATES], 0.0, False, "no law of rate is handed over"),  # a line has no I0
         ([0.5 - 0.2 * rate / (0.3 + rate) for rate in RATES], 1e-3, False, "is not resolved"),  # friction that falls
         (KNOWN, 0.1, False, "handed over"),
+        ([sine - 0.45 for sine in KNOWN], 0.003, False, "not handed over"),  # all of it below the slow tests
         (KNOWN, 0.06, True, "is hardly known"),
         ([sine + 0.03 for sine in KNOWN], 0.003, True, "is not that of the slow tests"),
         ([sine + 0.03 * (-1) ** k for k, sine in enumerate(KNOWN)], 0.003, True, "off the measured sine"),
