@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from porescale.analysis.material import UNITS, Known, elastic
+from porescale.analysis.shear_rate import AT_REST, FASTEST_ANGLE, GROWTH, HALFWAY, handed_over, law, point
 from porescale.common.core.statistics import LEAST
 
 USUAL = 4
@@ -19,6 +20,8 @@ INDEPENDENT = 5.0
 or three, as few are found as twice as many."""
 HALF = 0.5
 """Interval over mean above which a number that a continuum takes over is hardly known."""
+MISFIT = 2.0
+"""Intervals by which a law may miss a measured sine: with four packings one in 130 is that far off by chance."""
 HANDED_OVER = ("peak friction angle", "critical friction angle", "stiffness", "permeability")
 
 
@@ -64,4 +67,30 @@ def _critical(found: Mapping[str, Known]) -> list[str]:
             f"critical friction angle {angle.text()}: too wide to order friction coefficients above 0.3, known to "
             f"{math.degrees(ORDERED):.2g} degrees it would; `--until friction=5%` goes on"
         )
+    return made
+
+
+def rate_doubts(found: Mapping[str, Known], rates: Sequence[float], inertial: Sequence[float]) -> list[str]:
+    """Of the growth of friction with rate, one line each.  rates : as asked;  inertial : I as they were, (m,)."""
+    if HALFWAY not in found:
+        cause = "friction grows along a line, at once or not at all"
+        return [f"no law of rate is handed over: {cause}; faster homogenise.rates, or more packings"]
+    made = []
+    for name in (GROWTH, HALFWAY, FASTEST_ANGLE):
+        it = found[name]
+        if not it.mean > 0.0 or it.interval >= it.mean:
+            made.append(f"{name} {it.text()} is not resolved: faster homogenise.rates, or more packings")
+        elif it.interval > HALF * it.mean:
+            made.append(f"{name} {it.text()} is hardly known: faster homogenise.rates, or more packings")
+    if not handed_over(found):
+        return [*made, "the law of rate is not handed over"]
+    rest, slow = found[AT_REST], found["critical friction angle"]
+    if abs(rest.mean - slow.mean) > math.hypot(rest.interval, slow.interval):
+        beside = f"is not that of the slow tests, {slow.text()}"
+        made.append(f"{AT_REST} {rest.text()} {beside}: the law of a continuum begins at the latter")
+    for rate, number in zip(rates, inertial, strict=True):
+        seen = found[point("sine", rate)]
+        off = law(number, math.sin(rest.mean), found[GROWTH].mean, found[HALFWAY].mean) - seen.mean
+        if abs(off) > MISFIT * seen.interval:
+            made.append(f"at inertial number {rate:g} the law is {off:+.2g} off the measured sine {seen.text()}")
     return made

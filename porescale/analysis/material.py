@@ -5,8 +5,11 @@ format          1
                 stiffness at the mean stress reference, poisson;  SI, angles in rad
 [strength.critical], [strength.peak]    friction_angle, dilatancy_angle: after large strains, and at failure
 [pores]         permeability: K, m², of which k = K ρ g/μ of the scene's own water
+[rate]          where homogenise.rates asks for it: grain_diameter, friction_angle of the fastest shear, inertial_number
+                I0 of half the growth, see shear_rate.py
 [measured.…]    mean, interval (half of that at 95 %, by Student's t, with what is systematic), systematic (lattice and
-                lambda), standard_error, deviation of one packing, values, unit, of each number
+                lambda), standard_error, deviation of one packing, values, unit, of each number; values of the law of
+                [rate] are the jackknife's
 [made]          by what, of what, how: version, commit, scene, seeds, lambda, cells, grains, pressure …; doubts
 """
 
@@ -81,8 +84,15 @@ def elastic(found: Mapping[str, Known]) -> bool:
     return both and found["stiffness"].mean > 0.0 and 0.0 <= found["Poisson's ratio"].mean < SOLIDEST
 
 
-def tables(found: Mapping[str, Known], density: float, pressure: float, made: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a material file.  density : of grains, kg/m³;  pressure : mean stress of the measurement, Pa."""
+def tables(
+    found: Mapping[str, Known],
+    density: float,
+    pressure: float,
+    made: Mapping[str, Any],
+    rate: Mapping[str, float] | None = None,
+) -> dict[str, Any]:
+    """The tables of a material file.  density : of grains, kg/m³;  pressure : mean stress of the measurement, Pa;
+    rate : the table [rate], None for a file without it."""
     mean = {name: it.mean for name, it in found.items()}
     soil = {"density": (1.0 - mean["porosity"]) * density, "porosity": mean["porosity"]}
     if elastic(found):
@@ -95,6 +105,8 @@ def tables(found: Mapping[str, Known], density: float, pressure: float, made: Ma
     whole: dict[str, Any] = {"format": FORMAT, "soil": soil, "strength": strength}
     if "permeability" in mean:
         whole["pores"] = {"permeability": mean["permeability"]}
+    if rate is not None:
+        whole["rate"] = dict(rate)
     words = {name: name.replace(" ", "_").replace("'", "") for name in found}
     whole["measured"] = {words[name]: it.table() for name, it in found.items()}
     return {**whole, "made": dict(made)}

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from porescale.cli.homogenise_rates import Rates, known_of, sheared, table_of
+from porescale.cli.homogenise_rates import about as about_rates
 from porescale.common.cli.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say, use_threads
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, conclude, enlist, laid_over
@@ -55,13 +57,15 @@ def homogenise(
     """Measure the soil that a scene's packing makes: strength, stiffness, porosity and permeability, with intervals.
 
     Several packings are compressed in periodic cells (biaxial tests) and flow is driven through them, as [homogenise]
-    of the scene gives.  material.toml is what `[soil] material = "material.toml"` of a continuum-sph scene reads;
-    homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
+    of the scene gives; with homogenise.rates they are sheared at those inertial numbers, too.  material.toml is what
+    `[soil] material = "material.toml"` of a continuum-sph scene reads; homogenise.csv and .png show what it stands on.
+    What was stopped goes on when called again.
     """
     start = require_scene(scene, "porescale")
     from porescale.analysis.homogenise import lambda_error, section_of, specimen
     from porescale.analysis.material import known
     from porescale.builders.scene import Scene as SceneType
+    from porescale.cli.homogenise_specimen import specimen_file
     from porescale.common.schema.sections import load
     from porescale.common.studies.runner import Campaign
     from porescale.demseg.convert import toml
@@ -73,7 +77,7 @@ def homogenise(
     folder = output_folder(out, f"{read.name}_soil")
     campaign = Campaign("porescale", folder / SPECIMEN, folder / "specimens", threads=threads or 1, again=again)
     enlist(campaign, jobs, scheduler)
-    _specimen_file(folder, toml(test))
+    specimen_file(folder, SPECIMEN, toml(test))
     use_threads(threads)
     first, count = test["grains"]["packing"]["seed"], request.packings
     ends: list[Ended] = []
@@ -88,6 +92,12 @@ def homogenise(
         if not more:
             break
         count += more
+    rates = Rates()
+    if request.rates:
+        code, rates = sheared(read, test, campaign, range(first, first + count), jobs)
+        if code:
+            say(f"no material file: finish these first, by the same command in {folder}")
+            return code
     words = [
         "porescale",
         "homogenise",
@@ -95,7 +105,7 @@ def homogenise(
         *laid_over(quality, settings),
         *(["--until", until] if until else []),
     ]
-    print(write(folder, read, shlex.join(words), ends, rows))
+    print(write(folder, read, shlex.join(words), ends, rows, rates))
     return 0
 
 
@@ -140,23 +150,6 @@ def _more(found: Mapping[str, Known], name: str, small: float) -> int:
     return int(min(max(count - have, 1), have, MOST - have))  # a deviation of few is not trusted with more than twice
 
 
-def _specimen_file(folder: Path, text: str) -> None:
-    """Write the scene of the specimens in ``folder``; InputError where another one was begun there."""
-    from porescale.common.cli.folders import unusable
-    from porescale.common.core.atomic import write_text
-
-    file = folder / SPECIMEN
-    try:
-        if file.exists() and file.read_text(encoding="utf-8", errors="replace") != text:
-            repair = "name another --out, or remove that folder"
-            raise InputError(Fault("--out", str(folder), "holds specimens of another scene", repair=repair))
-        folder.mkdir(parents=True, exist_ok=True)
-        if not file.exists():
-            write_text(file, text)
-    except OSError as error:
-        raise unusable(folder, "--out", error) from None
-
-
 def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str, float]]:
     """All numbers of the finished specimens: of their tests, and of the flow through them where lambda is stated."""
     from porescale.analysis.biaxial import numbers
@@ -198,6 +191,7 @@ def write(
     command: str,
     ends: Sequence[Ended],
     rows: Sequence[Mapping[str, float]],
+    rates: Rates,
 ) -> str:
     """Write homogenise.csv, homogenise.png and, last, material.toml; gives the text to print about them."""
     from porescale.analysis.biaxial import curves
@@ -210,19 +204,28 @@ def write(
     from porescale.common.studies.sweep_files import csv_text
     from porescale.demseg.convert import toml
 
-    found = known(rows, lambda_error(scene))
+    found, of_rates = known(rows, lambda_error(scene)), known_of(rates)
     titles = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS.items() if name in found}
     seeds = [int(ended.point.value("grains.packing.seed")) for ended in ends]
     lines = [
         {"seed": seed, **{titles[name]: row[name] for name in titles}} for seed, row in zip(seeds, rows, strict=True)
     ]
+    for name in (name for name in of_rates if " at inertial number " in name):
+        for line, value in zip(lines, of_rates[name].values, strict=True):
+            line[name] = value
     tests = [curves(read_series(ended.folder / "series.csv")) for ended in ends]
     made = about(scene, command, ends, rows, found)
-    whole = tables(found, MaterialPlan.of(scene).density(packing_of(scene).material), pressure_of(scene), made)
+    every = found | of_rates
+    more, doubts = about_rates(rates, every)
+    made["doubts"] += doubts
+    density = MaterialPlan.of(scene).density(packing_of(scene).material)
+    whole = tables(every, density, pressure_of(scene), made | more, table_of(scene, every))
     material = HEAD + toml(whole)
-    write_files(folder, {"homogenise.csv": csv_text(lines), "homogenise.png": picture(tests, found), NAME: material})
+    write_files(
+        folder, {"homogenise.csv": csv_text(lines), "homogenise.png": picture(tests, every, rates), NAME: material}
+    )
     warned = [f"warning: {problem}" for problem in made["doubts"]]
-    return "\n".join([text(found), *warned, f"{folder / NAME}, homogenise.csv, homogenise.png"])
+    return "\n".join([text(every), *warned, f"{folder / NAME}, homogenise.csv, homogenise.png"])
 
 
 def about(

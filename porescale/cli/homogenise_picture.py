@@ -1,11 +1,15 @@
 """The picture of `porescale homogenise`: the tests of all packings, and every number with its error bar."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from porescale.analysis.biaxial import running
 from porescale.analysis.material import Known
+from porescale.analysis.shear_rate import AT_REST, GROWTH, HALFWAY, inertial_numbers, law, point
+from porescale.cli.homogenise_rates import Rates
 from porescale.common.core.types import Floats
 from porescale.common.evidence.files import new_figure, png
 
@@ -15,10 +19,14 @@ BARS = ("peak friction angle", "peak dilatancy angle", "critical friction angle"
         "Poisson's ratio", "permeability")  # fmt: skip
 
 
-def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known]) -> bytes:
-    """Friction angle and volume over strain of every packing, and numbers over their means, as a PNG."""
-    figure = new_figure(12.0, 3.6)
-    left, middle, right = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.2))
+def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known], rates: Rates) -> bytes:
+    """Friction angle and volume over strain of every packing, numbers over their means, and, where ``rates`` were
+    asked for, sin φ over the inertial number with the law, as a PNG."""
+    more = (1.0,) if rates.asked else ()
+    figure = new_figure(12.0 + 3.6 * len(more), 3.6)
+    left, middle, right, *last = figure.subplots(1, 3 + len(more), width_ratios=(1.0, 1.0, 1.2, *more))
+    for axes in last:
+        _rates(axes, found, rates)
     for test in tests:
         angle = np.degrees(np.arcsin(running(test["strain"], test["sine"])[0]))
         left.plot(test["strain"][::EVERY], angle[::EVERY], color="#2a6f97", lw=0.7)
@@ -40,3 +48,24 @@ def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known]) -
     right.invert_yaxis()
     right.set_xlabel("of the mean; dots: packings, bars: intervals at 95 %")
     return png(figure, 100)
+
+
+def _rates(axes: Axes, found: Mapping[str, Known], rates: Rates) -> None:
+    """Sines of all packings over their inertial numbers, means with bars, and the law."""
+    for each in rates.tests:
+        axes.plot([it.inertial for it in each], [it.sine for it in each], ".", color="#9fb8c8", ms=5)
+    inertial = inertial_numbers(rates.tests)
+    seen = [found[point("sine", rate)] for rate in rates.asked]
+    bars = np.nan_to_num([it.interval for it in seen])
+    axes.errorbar(inertial, [it.mean for it in seen], yerr=bars, fmt="o", color="#8c1c2f", ms=4, capsize=4)
+    if HALFWAY in found:
+        across = np.geomspace(0.3 * inertial.min(), 2.0 * inertial.max(), 100)
+        rest, growth, halfway = math.sin(found[AT_REST].mean), found[GROWTH].mean, found[HALFWAY].mean
+        label = f"{rest:.3f} + {growth:.3f} I/({halfway:.3f} + I)"
+        axes.plot(
+            across, [law(it, rest, growth, halfway) for it in across.tolist()], color="#3b4552", lw=1.0, label=label
+        )
+        axes.legend(fontsize=7, frameon=False, loc="upper left")
+    slow = found["critical friction angle"]
+    axes.axhline(math.sin(slow.mean), color="#2a6f97", lw=0.7, ls=":")
+    axes.set(xscale="log", xlabel="inertial number; dotted: slow tests", ylabel="sine of the friction angle")

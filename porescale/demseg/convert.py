@@ -180,7 +180,7 @@ def toml(tables: dict[str, Any]) -> str:
 
 
 def _lines(table: dict[str, Any], above: str) -> list[str]:
-    lines = [f"{key} = {_value(it)}\n" for key, it in table.items() if not _is_table(it, above)]
+    lines = [f"{_key(key)} = {_value(it)}\n" for key, it in table.items() if not _is_table(it, above)]
     for key, it in table.items():
         name = f"{above}.{key}" if above else key
         if isinstance(it, dict) and _is_table(it, above):
@@ -189,6 +189,12 @@ def _lines(table: dict[str, Any], above: str) -> list[str]:
             for each in it:
                 lines += [f"\n[[{name}]]\n", *(f"{k} = {_value(v)}\n" for k, v in each.items())]
     return lines
+
+
+def _key(name: str) -> str:
+    """The key as TOML takes it: bare, or in quotes where it has a dot or a space."""
+    bare = name.isascii() and name.replace("_", "").replace("-", "").isalnum()
+    return name if bare else json.dumps(name, ensure_ascii=False)
 
 
 def _is_table(value: Any, above: str) -> bool:

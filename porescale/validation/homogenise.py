@@ -1,12 +1,14 @@
 """Validations of `porescale homogenise`: a Mohr-Coulomb soil, an array of cylinders, discs of da Cruz et al. 2005."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from porescale.analysis import biaxial
 from porescale.analysis.homogenise import specimen
+from porescale.analysis.shear_rate import WARM, sheared
 from porescale.analysis.soil_pores import flow_numbers
 from porescale.builders.build import build
 from porescale.builders.scene import Scene
@@ -58,23 +60,41 @@ def array_permeability(share: float = 1.0) -> float:
     return found["permeability"] * DRAG / size**2
 
 
-def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
-    """Critical friction angle, degrees, of one specimen of discs with ``friction``."""
-    given = validate(Scene, {
+def discs(friction: float, seed: int, homogenise: dict[str, Any]) -> Scene:
+    """A scene with one packing of discs with ``friction``."""
+    return validate(Scene, {
         "title": "", "domain": {"width": 0.1, "height": 0.1}, "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0}, "homogenise": {"grains": grains},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0}, "homogenise": homogenise,
         "grains": {"density": 2500, "packing": {**DISCS, "seed": seed}},
         "contact": {"stiffness": 1e7, "tangential_stiffness": 5e6, "restitution": 0.3, "friction": friction},
     })  # fmt: skip
-    test = validate(Scene, specimen(given))
+
+
+def series_of(table: dict[str, Any]) -> dict[str, AnyArray]:
+    """The columns of series.csv of a test, from its tables."""
+    test = validate(Scene, table)
     simulation = build(test)
     each = max(1, round(test.output.series_interval / simulation.step_seconds))
     rows: list[dict[str, float]] = []
     while simulation.time < test.time.end:
         rows.append(simulation.series())
         simulation.advance(each)
-    series: dict[str, AnyArray] = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
+    """Critical friction angle, degrees, of one specimen of discs with ``friction``."""
+    series = series_of(specimen(discs(friction, seed, {"grains": grains})))
     return math.degrees(biaxial.numbers([series])[0]["critical friction angle"])
+
+
+def stress_ratio(inertial: float, seed: int, friction: float = 0.4, grains: int = 300) -> float:
+    """Shear over normal stress of discs in steady shear at the inertial number γ̇ √(m/p) of da Cruz et al. 2005."""
+    rates = [inertial / math.sqrt(math.pi / 4.0) * share for share in (1.0, 0.9, 0.8, 0.7)]  # the first is sheared
+    given = discs(friction, seed, {"grains": grains, "rates": rates})
+    series = series_of(sheared(given, specimen(given)))
+    late = series["strain xy ()"] >= WARM
+    return float(series["shear stress (Pa)"][late].mean() / series["stress yy (Pa)"][late].mean())
 
 
 @VALIDATIONS.row(
@@ -113,3 +133,17 @@ def critical_state() -> Measured:
     """Critical friction angle of four specimens, degrees."""
     found = float(np.mean([critical_angle(0.4, seed) for seed in (1, 2, 3, 4)]))
     return Measured.absolute(math.degrees(math.asin(0.251)), found)
+
+
+@VALIDATIONS.row(
+    "scene.friction_of_discs_in_fast_shear",
+    source="da Cruz, Emam, Prochnow, Roux & Chevoir 2005: stress ratio 0.25 + 1.1 I of discs with a friction of 0.4, at"
+    " I = 0.2, the fastest of that line",
+    because="digits that are printed, 0.005 and 0.05 * 0.2, and three deviations of specimens of 300, 0.008, over root"
+    " 4: added",
+    tolerance=0.027,
+    slow=True,
+)
+def fast_shear() -> Measured:
+    """Stress ratio of four specimens in steady shear."""
+    return Measured.absolute(0.25 + 1.1 * 0.2, float(np.mean([stress_ratio(0.2, seed) for seed in (1, 2, 3, 4)])))

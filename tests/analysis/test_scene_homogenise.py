@@ -94,6 +94,13 @@ def test_discs_reach_the_critical_state_of_the_paper_and_discs_without_friction_
     assert abs(verify.critical_angle(0.0, 1) - row.reference) > 3 * row.tolerance
 
 
+@pytest.mark.slow
+def test_discs_in_fast_shear_have_the_friction_of_the_paper_and_at_half_the_rate_they_have_not():
+    row = VALIDATIONS["scene.friction_of_discs_in_fast_shear"].run()
+    assert row.passed, row
+    assert abs(verify.stress_ratio(0.1, 1) - row.reference) > 2 * row.tolerance
+
+
 def test_pressure_is_what_is_asked_else_the_packings_else_the_weights():
     # half of a height of 5.5 mm at a packing fraction of 0.7: wet grains of 2500 kg/m³ weigh 1500 kg/m³ times g
     wet = column()
@@ -156,8 +163,12 @@ def test_what_cannot_be_homogenised_is_refused(changes, said):
 
 
 @pytest.mark.parametrize(
-    "changes", [{"pressure": 0}, {"packings": 1}, {"grains": 10}, {"strain": 2}, {"cels": 3}, {"aspect_ratio": 5}]
-)
+    "changes",
+    [
+        {"pressure": 0}, {"packings": 1}, {"grains": 10}, {"strain": 2}, {"cels": 3}, {"aspect_ratio": 5},
+        {"rates": [0.1, 0.2, 0.3]}, {"rates": [0.1, 0.1, 0.2, 0.3]}, {"rates": [0.1, 0.2, 0.3, 2.0]}, {"rates": 0.1},
+    ],
+)  # fmt: skip
 def test_wrong_keys_are_refused(changes):
     with pytest.raises(InputError, match="homogenise"):
         column(homogenise=changes)

@@ -156,6 +156,16 @@ def test_only_a_scene_with_a_table_of_rates_takes_them_over_and_its_own_keys_win
     assert with_material({"soil": {**named, "rate": own}}, tmp_path)["soil"]["rate"] == own
 
 
+def test_a_scene_with_an_empty_table_of_rates_has_the_law_of_the_file(tmp_path):
+    material(tmp_path, rate=RATE)
+    taken = scene(tmp_path, "[soil.rate]\n").soil.rate
+    assert (taken.grain_diameter, taken.friction_angle, taken.inertial_number) == (1.5e-3, 0.6, 0.3)
+    assert scene(tmp_path).soil.rate is None
+    material(tmp_path)  # a file without rates: the section asks for its own keys
+    with pytest.raises(InputError, match=r"soil\.rate\.friction_angle"):
+        scene(tmp_path, "[soil.rate]\n")
+
+
 def test_permeability_is_that_of_the_scenes_own_water(tmp_path):
     material(tmp_path)
     plain, thick = scene(tmp_path).soil, scene(tmp_path, water='[water]\nviscosity = "0.01 Pa s"\ndensity = 500\n').soil

@@ -56,6 +56,7 @@ def asks(capsys):
         ({"grains__packing__diameter": -1}, "grains.packing.diameter"),
         ({"homogenise__packings": 1}, "homogenise.packings"),
         ({"homogenise__presure": 1}, "homogenise.presure"),
+        ({"homogenise__rates": [0.1, 0.2, 0.3]}, "homogenise.rates"),
         ({"homogenise__pressure": "1 MPa"}, "homogenise.pressure"),
         ({"gravity": [0, 0], "homogenise__pressure": None}, "homogenise.pressure"),
         ({"contact": {"law": "hertz", "young": 1e7, "restitution": 0.5}}, "contact.law"),
@@ -106,6 +107,10 @@ def test_a_scene_becomes_a_material_that_the_continuum_reads(tmp_path, asks, cap
     assert asks("homogenise", file, "--out", out)[0] == 0
     first = (out / "material.toml").read_bytes()
     made = tomllib.loads(first.decode())
+    assert "rate" not in made  # no rates are asked for: none are measured
+    assert sorted(path.name for path in out.iterdir()) == [
+        "homogenise.csv", "homogenise.png", "material.toml", "specimen.toml", "specimens",
+    ]  # fmt: skip
     with open(out / "homogenise.csv", encoding="utf-8") as text:
         rows = list(csv.DictReader(text))
     assert [row["seed"] for row in rows] == ["1", "2"]
@@ -133,3 +138,28 @@ def test_a_scene_becomes_a_material_that_the_continuum_reads(tmp_path, asks, cap
     said = capsys.readouterr().out
     assert "measured on grains" in said
     assert "2 packings give no interval" in said
+
+
+RATED = table(SMALL, homogenise__rates=[0.1, 0.2, 0.4, 0.8], grains__hydraulic_radius_ratio=None, fluid=None)
+
+
+@pytest.mark.slow
+def test_rates_add_to_a_material_file_and_alter_nothing_else(tmp_path, asks):
+    plain, out = write(tmp_path / "plain.toml", table(RATED, homogenise__rates=None)), tmp_path / "soil"
+    assert asks("homogenise", plain, "--out", out)[0] == 0
+    without = tomllib.loads((out / "material.toml").read_text(encoding="utf-8"))
+    file = write(tmp_path / "rated.toml", RATED)
+    assert asks("homogenise", file, "--out", out)[0] == 0  # the slow tests that are there already are taken
+    first = (out / "material.toml").read_bytes()
+    made = tomllib.loads(first.decode())
+    assert {name: made["measured"][name] for name in without["measured"]} == without["measured"]
+    assert {name: made[name] for name in ("soil", "strength")} == {name: without[name] for name in ("soil", "strength")}
+    assert len(list((out / "sheared").glob("packing-*/card.json"))) == 8
+    sines = [made["measured"][f"sine_at_inertial_number_{rate}"]["mean"] for rate in made["made"]["rates"]]
+    assert sines == sorted(sines)  # friction grows with the rate
+    for asked, found in zip(made["made"]["rates"], made["made"]["inertial_numbers"], strict=True):
+        assert 0.5 * asked < found < math.sqrt(2.0) * asked  # p is half of the stress across, which is held, at least
+    before = {path: path.stat().st_mtime_ns for path in out.rglob("card.json")}
+    assert asks("homogenise", file, "--out", out)[0] == 0
+    assert (out / "material.toml").read_bytes() == first
+    assert {path: path.stat().st_mtime_ns for path in out.rglob("card.json")} == before
