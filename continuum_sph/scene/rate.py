@@ -1,12 +1,9 @@
 """The section of rate: friction that grows with the rate of shear."""
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Section, quantity
-
-if TYPE_CHECKING:
-    from continuum_sph.scene.soil import SoilSection
 
 
 class RateSection(Section):
@@ -20,7 +17,7 @@ class RateSection(Section):
     inertial_number: float = quantity("", ge=1e-4, le=100, help="I at which half of the growth is there")
     grain_diameter: float = quantity("m", ge=1e-7, le=10, help="diameter of the grains")
 
-    def faults(self, soil: "SoilSection") -> list[Fault]:
+    def faults(self, soil: Any) -> list[Fault]:
         """What is wrong with it in a ``soil``."""
         found = []
         if self.friction_angle < soil.friction_angle:
