@@ -5,10 +5,12 @@ import math
 from continuum_sph.builders.parts.soil import material_of, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.watched import watched_rows
 from continuum_sph.builders.reports.time_report import report_run
-from continuum_sph.scene.material_file import Origin
+from continuum_sph.scene.material_file import VISCOSITY, Origin
 from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.soil import SoilSection
 from continuum_sph.soil.parameters import RULES
 from porescale.common.api.report import Report, report_output
+from porescale.common.core.constants import GRAVITY
 
 RATE = 1.5e6  # particle-steps per second and thread, measured on the two-core machine of the benchmarks, rounded down
 SNAPSHOT = 80  # per particle of a snapshot on disk, about
@@ -50,6 +52,7 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
         out.row("stress ratio at failure", (1.0 + math.sin(phi)) / (1.0 - math.sin(phi)), "", "without cohesion")
         limit = math.atan(math.sin(phi) * math.cos(psi) / (1.0 - math.sin(phi) * math.sin(psi)))
         out.row("angle at which an endless slope shears", math.degrees(limit), "degrees", "without cohesion")
+    report_rate(out, section)
     out.heading("steps")
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
     step = min(limits)
@@ -64,6 +67,23 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
     if strain > 10.0 * SOFTEST:
         out.warn(f"the soil's weight strains it by {100.0 * strain:.2g} %: raise soil.stiffness")
     return out
+
+
+def report_rate(out: Report, section: SoilSection, wet: bool = False) -> None:
+    """Add to a report how the friction of a soil grows with the rate of shear, and warn of ``wet`` soil."""
+    rate = section.rate
+    if rate is None:
+        return
+    fastest = math.degrees(math.atan(math.sin(rate.friction_angle)))
+    out.row("angle beyond which it speeds up without end", fastest, "degrees", "without cohesion and dilatancy")
+    pace = math.sqrt(GRAVITY / section.height)
+    grains = section.density / (1.0 - section.porosity)
+    inertial = pace * rate.grain_diameter * math.sqrt(grains / (0.5 * section.density * GRAVITY * section.height))
+    about = f"shear by √(g/H) at half of its height; I0 {rate.inertial_number:g}"
+    out.row("inertial number of its own fall", inertial, "", about)
+    if wet:
+        stokes = grains * rate.grain_diameter**2 * pace / VISCOSITY
+        out.warn(f"[soil.rate] is of dry grains: in water, viscosity can brake them first (Stokes number {stokes:.2g})")
 
 
 def report_origin(out: Report, origin: Origin | None) -> None:

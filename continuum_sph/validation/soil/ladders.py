@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from continuum_sph.soil import Rate
 from continuum_sph.validation.soil import fast_flow
-from continuum_sph.validation.soil.run_outs import BEADS, SAND, Grains, run_outs
+from continuum_sph.validation.soil.run_outs import BEADS, GLASS, SAND, Grains, run_outs
 from continuum_sph.validation.soil.setups import TAN_PHI
 from continuum_sph.validation.soil.slopes import NEAR, slope, strewn_friction, sunk
 from porescale.common.evidence.convergence import Ladders
@@ -78,12 +79,17 @@ def sinking(rows: float) -> float:
     return abs(sunk(int(rows)))
 
 
-def run_out_error(grains: Grains, rows: float) -> float:
-    """Largest |run-out over that of the experiments' law, less 1| of columns of H/L 0.5 to 4."""
-    return float(np.abs(run_outs(grains, int(rows)) - 1.0).max())
+def run_out_error(grains: Grains, rate: Rate | None, rows: float) -> float:
+    """Largest |run-out over that of the experiments' law, less 1| of columns of H/L 0.5 to 4;  rate : of their
+    friction."""
+    return float(np.abs(run_outs(grains, int(rows), rate) - 1.0).max())
 
 
-for name, what, grains in (("sand", "sand", SAND), ("beads", "glass beads", BEADS)):
+for name, what, grains, rate in (
+    ("sand", "sand", SAND, None),
+    ("beads", "glass beads", BEADS, None),
+    ("beads_that_rub", "glass beads of 1 mm whose friction grows with the rate of shear", BEADS, GLASS),
+):
     LADDERS.ladder(
         f"soil.run_out_of_{name}",
         title=f"Largest relative error of the run-outs of columns of {what}, H/L 0.5 to 4, from the experiments' law",
@@ -91,4 +97,4 @@ for name, what, grains in (("sand", "sand", SAND), ("beads", "glass beads", BEAD
         levels=(10, 20, 40, 80),
         because="no order is expected: a law drawn through experiments is no limit; coarse deposits are few "
         "particles deep, and a front is known to half a particle",
-    )(partial(run_out_error, grains))
+    )(partial(run_out_error, grains, rate))

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from continuum_sph.builders.parts.soil import geostatic
-from continuum_sph.soil import Material, SoilFlow
+from continuum_sph.soil import Material, Rate, SoilFlow
 from continuum_sph.validation.soil.setups import in_tank, run_until
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
@@ -29,7 +29,7 @@ VALIDATIONS = Validations()
 ASPECTS = (0.5, 1.0, 2.0, 4.0)
 """H/L."""
 ROWS = 40
-LARGENESS = 0.1  # m, root of a column's area: nothing hangs on it
+LARGENESS = 0.1  # m, root of a column's area: nothing hangs on it but where friction grows with the rate of shear
 DENSITY = 1600.0  # kg/m³
 STIFFNESS = 500.0  # E over ρ g H: strains of 2e-3
 SECONDS = 5.0  # √(H/g): from 4 to 5 the front goes on by a hundredth at most
@@ -58,14 +58,20 @@ SAND = Grains(30.0, 1.2, 1.9, 2.3)
 BEADS = Grains(22.0, 1.8, 2.3, 3.0)
 
 
-def let_go(aspect: float, rows: int, repose: float) -> tuple[SoilFlow, float, float]:
+RUBBING = math.tan(math.radians(32.76)) - math.tan(math.radians(20.90))
+GLASS = Rate(math.tan(math.radians(BEADS.repose)) + RUBBING, inertial_number=0.279, grain_diameter=1e-3)
+"""How the friction of glass beads grows (Jop, Forterre & Pouliquen, Nature 441 (2006) 727: 20.90° to 32.76°, I0 0.279),
+from that of their angle of repose on; beads of 1 mm."""
+
+
+def let_go(aspect: float, rows: int, repose: float, rate: Rate | None = None) -> tuple[SoilFlow, float, float]:
     """(a column at its release, its base m, its spacing m): ``rows`` to the root of its area, ``aspect`` H/L,
-    ``repose`` degrees."""
+    ``repose`` degrees, ``rate`` of its friction."""
     height = LARGENESS * math.sqrt(aspect)
     spacing = height / round(rows * math.sqrt(aspect))
     base = spacing * round(height / aspect / spacing)
     stiffness = STIFFNESS * DENSITY * GRAVITY * height
-    material = Material(stiffness, DENSITY, sin_friction=math.tan(math.radians(repose)))
+    material = Material(stiffness, DENSITY, sin_friction=math.tan(math.radians(repose)), rate=rate)
     x = square_lattice((0.0, 0.0), (base, height), spacing)
     tank = (base * (3.0 + 4.0 * aspect), 1.3 * height)
     return in_tank(x, geostatic(height - x[:, 1], material), tank, spacing, material), base, spacing
@@ -81,16 +87,16 @@ def front(x: Floats, spacing: float, from_place: float) -> float:
 
 
 @functools.cache
-def run_out(aspect: float, repose: float, rows: int = ROWS) -> float:
-    """(L∞ - L)/L of soil with an angle of repose, degrees."""
-    flow, base, spacing = let_go(aspect, rows, repose)
+def run_out(aspect: float, repose: float, rows: int = ROWS, rate: Rate | None = None) -> float:
+    """(L∞ - L)/L of soil with an angle of repose, degrees, and a ``rate`` of its friction."""
+    flow, base, spacing = let_go(aspect, rows, repose, rate)
     run_until(flow, SECONDS * math.sqrt(LARGENESS * math.sqrt(aspect) / GRAVITY))
     return front(flow.soil.x[: flow.soil.soil], spacing, 0.5 * base) / base - 1.0
 
 
-def run_outs(grains: Grains, rows: int = ROWS) -> Floats:
-    """Run-outs (4,) of columns of ``grains`` for `ASPECTS`, over those of the law."""
-    return np.array([run_out(aspect, grains.repose, rows) / grains.law(aspect) for aspect in ASPECTS])
+def run_outs(grains: Grains, rows: int = ROWS, rate: Rate | None = None) -> Floats:
+    """Run-outs (4,) of columns of ``grains`` for `ASPECTS`, over those of the law;  rate : of their friction."""
+    return np.array([run_out(aspect, grains.repose, rows, rate) / grains.law(aspect) for aspect in ASPECTS])
 
 
 LOOSE = 0.5 * (SAND.tall * 2.0 ** (2.0 / 3.0) / (SAND.squat * 2.0) - 1.0)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.parts.soil import material_of
+from continuum_sph.builders.report import report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.soil import Material, Rate
 from continuum_sph.soil.material import RATE_PACE, RATE_STRENGTH
@@ -85,6 +86,21 @@ def test_a_scene_names_its_rate():
     rate = material_of(scene(GIVEN).soil).rate
     assert rate == Rate(math.sin(math.radians(40.0)), 0.3, 1e-3)
     assert material_of(scene(None).soil).rate is None
+
+
+def test_check_says_what_the_rate_does_and_warns_in_water():
+    dry = report(scene(GIVEN))
+    names = {row.name: row.value for group in dry.groups.values() for row in group}
+    assert names["angle beyond which it speeds up without end"] == pytest.approx(
+        math.degrees(math.atan(math.sin(math.radians(40.0))))
+    )
+    # √(9.81/0.5) 1e-3 √(2/(9.81 0.5 0.6)): H 0.5 m, ρs/ρ 1/0.6
+    fall = names["inertial number of its own fall"]
+    assert fall == pytest.approx((9.80665 / 0.5) ** 0.5 * 1e-3 * (2.0 / (9.80665 * 0.5 * 0.6)) ** 0.5)
+    assert not dry.warnings
+    wet = report(scene(GIVEN, saturated=True))
+    assert [line for line in wet.warnings if "is of dry grains" in line]
+    assert "inertial number of its own fall" not in {r.name for g in report(scene(None)).groups.values() for r in g}
 
 
 @pytest.mark.parametrize(
