@@ -14,13 +14,13 @@ from porescale.builders.initial.apply_sections import apply_sections, names_of
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.frames import Placed, placed_frames, with_corners
 from porescale.builders.initial.obstacles import obstacles_of, rectangles_around
-from porescale.builders.initial.packing import by_packing, compressed, radii_of, say_void_ratio
+from porescale.builders.initial.packing import by_packing, compressed, drawn_radii, radii_of, say_void_ratio
 from porescale.builders.initial.placed import by_hand, placed
 from porescale.builders.initial.rectangles import stand_ins, take_over
 from porescale.builders.initial.rock import rock_discs, rock_frames
 from porescale.common.core.errors import InputError
 from porescale.common.core.types import AnyArray
-from porescale.common.neighbors.placement import draw_radii, place, square_lattice
+from porescale.common.neighbors.placement import place, square_lattice
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import FIELDS, Discs, make_discs
 from porescale.dem.forces.walls import Box, Plate
@@ -193,8 +193,7 @@ def _placed(packing: Packing, density: float, around: Obstacles) -> Discs:
             placed = place(lower, upper, seed=packing.seed, **sizes)
         else:
             if radii is None:
-                rng, area = np.random.default_rng(packing.seed), packing.width * packing.height
-                radii = draw_radii(area, packing.diameter, packing.size_spread, None, packing.packing_fraction, rng)
+                radii = drawn_radii(packing)
             placed = around.place(lower, upper, radii, packing.seed, (False, False))
     except InputError as error:
         raise by_packing(error) from None
