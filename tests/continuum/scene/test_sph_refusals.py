@@ -3,6 +3,7 @@ twice."""
 
 import pytest
 
+from continuum_sph import build, check
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
@@ -129,3 +130,20 @@ def test_a_spacing_too_large_for_a_side_is_what_is_wrong_with_its_face():
         scene(**full, face=[face], numerics={"spacing": 0.5})
     with pytest.raises(InputError, match=r"face\[0\]\.start = 0\.3 m"):  # the side has two rows, the face has not
         scene(**full, face=[face | {"start": 0.3}], numerics={"spacing": 0.25})
+
+
+WET = {"water": WATER, "soil": {"porosity": 0.4, "permeability": 0.01}}
+UNFIT = [
+    ({"water": WATER | {"sound_speed": 3.0}}, r"water\.sound_speed = 3\.0 m/s: makes the fall of the water Mach"),
+    (WET | {"tank": {"width": 1.0, "height": 0.5, "wall_particles": "images"}}, r"tank\.wall_particles.*cannot be with soil"),
+    (WET | {"inclusion": {"density": 500, "disc": [{"x": 0.15, "y": 0.15, "radius": 0.15}]}, "numerics": {"spacing": 0.025}},
+     "inclusion.*cannot be with soil"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "said"), UNFIT, ids=["soft", "images", "inclusion"])
+def test_what_check_refuses_is_not_built_either(changes, said):
+    for act in (check, build):
+        with pytest.raises(InputError, match=said):
+            act(scene(**changes))
+    assert build(scene(**WET)).step == 0  # the check that fails: without the change it is built
