@@ -133,12 +133,16 @@ def test_a_spacing_too_large_for_a_side_is_what_is_wrong_with_its_face():
 
 
 WET = {"water": WATER, "soil": {"porosity": 0.4, "permeability": 0.01}}
+IMAGES = {"tank": {"width": 1.0, "height": 0.5, "wall_particles": "images"}}
+BUBBLE = {
+    "inclusion": {"density": 500, "disc": [{"x": 0.15, "y": 0.15, "radius": 0.15}]},
+    "numerics": {"spacing": 0.025},
+}
 UNFIT = [
     ({"water": WATER | {"sound_speed": 3.0}}, r"water\.sound_speed = 3\.0 m/s: makes the fall of the water Mach"),
-    (WET | {"tank": {"width": 1.0, "height": 0.5, "wall_particles": "images"}}, r"tank\.wall_particles.*cannot be with soil"),
-    (WET | {"inclusion": {"density": 500, "disc": [{"x": 0.15, "y": 0.15, "radius": 0.15}]}, "numerics": {"spacing": 0.025}},
-     "inclusion.*cannot be with soil"),
-]  # fmt: skip
+    (WET | IMAGES, r"tank\.wall_particles.*cannot be with soil"),
+    (WET | BUBBLE, r"inclusion.*cannot be with soil"),
+]
 
 
 @pytest.mark.parametrize(("changes", "said"), UNFIT, ids=["soft", "images", "inclusion"])
