@@ -151,3 +151,20 @@ def test_what_check_refuses_is_not_built_either(changes, said):
         with pytest.raises(InputError, match=said):
             act(scene(**changes))
     assert build(scene(**WET)).step == 0  # the check that fails: without the change it is built
+
+
+def test_a_reservoir_without_soil_is_refused_in_one_line_and_beside_soil_it_fills_an_empty_tank():
+    given = scene().model_dump(mode="json", exclude_unset=True)
+    empty = {key: given[key] for key in ("tank", "numerics", "time", "output")}
+    with pytest.raises(InputError) as refused:
+        validate(Scene, empty | {"reservoir": [POOL]})
+    assert [fault.line() for fault in refused.value.faults] == ["reservoir = 'given': needs soil beside it; add [soil]"]
+    with pytest.raises(InputError, match=r"^water\.column: is missing; give at least one rectangle of water$"):
+        validate(Scene, empty)  # the check that fails: without the reservoir it is the column
+    filled = build(scene(soil={"held": True}, reservoir=[POOL | {"level": None, "rise": [[0, 0], [0.1, 0.2]]}]))
+    assert filled.series()["mass (kg/m)"] == 0.0
+    while filled.time < 0.1:
+        filled.advance(1)
+    row = filled.series()
+    # Three columns of particles, 2.5 kg/m each, and the level is known to a row: three of four rows at least.
+    assert row["mass (kg/m)"] == row["river let in (kg/m)"] - row["river let out (kg/m)"] >= 3 * 3 * 2.5
