@@ -1,15 +1,17 @@
 """From the first line of a program to its end: Ctrl-C ends it with one line and exit code 130, wherever it comes.
 
-The modules of a command take a second to import, and a scene some to be built.  Three things were seen to happen to a
-KeyboardInterrupt in that time: nothing caught it yet; it was raised in a callback of the import system, which Python
-prints and forgets; it left an ``exec`` of source text, as of `dataclasses`, after which Python 3.11 ends the process by
-the signal although it was caught.  What comes while Python itself starts and imports the package is Python's to end.
+The modules of a command take a second to import, and a scene some to be built.  In that time a KeyboardInterrupt was
+seen to come before anything catches it; to be raised in a callback of the import system, which Python prints and
+forgets; to be cleared by a library, so that the run went on to its end; and to leave an ``exec`` of source text, as of
+`dataclasses`, after which Python 3.11 ends the process by the signal although it was caught.  What comes while Python
+itself starts and imports the package is Python's to end.
 """
 
 import _thread
 import signal
 import sys
 import threading
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
@@ -18,8 +20,8 @@ from typing import Any
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
-AGAIN = 0.01
-"""Seconds after which a Ctrl-C that a callback has lost is raised once more."""
+AGAIN = 0.25
+"""Seconds after which a Ctrl-C that was lost is raised once more; a command that has caught it ends sooner."""
 
 
 class CtrlC(KeyboardInterrupt):
@@ -47,7 +49,7 @@ def command(module: str) -> int:
 
 @contextmanager
 def ctrl_c() -> Iterator[list[int]]:
-    """Within this SIGINT raises `CtrlC`, again where a callback loses it; yields the list of those that came.
+    """Within this SIGINT raises `CtrlC`, again where it is lost; yields the list of those that came.
 
     Nothing is changed outside the main thread, or where SIGINT is ignored or handled by others.
     """
@@ -57,18 +59,28 @@ def ctrl_c() -> Iterator[list[int]]:
         yield came
         return
 
+    ended = threading.Event()
+
     def interrupt(number: int, frame: FrameType | None) -> None:
-        """Raise what ends the command."""
+        """Raise what ends the command, and see that it does."""
         came.append(number)
-        raise CtrlC
+        stop = CtrlC()
+        threading.Thread(target=again, args=(weakref.ref(stop),), daemon=True).start()
+        try:
+            raise stop
+        finally:
+            del stop  # else its traceback keeps it
+
+    def again(raised: weakref.ref[CtrlC]) -> None:
+        """Raise it once more where it is gone, lost in a callback or cleared by a library, and nothing has ended."""
+        while not ended.wait(AGAIN):
+            if raised() is None:
+                _thread.interrupt_main()
+                return
 
     def unraisable(lost: Any) -> None:
-        """Raise a lost Ctrl-C again, not within this function; print all else as before."""
-        if isinstance(lost.exc_value, CtrlC):
-            later = threading.Timer(AGAIN, _thread.interrupt_main)
-            later.daemon = True
-            later.start()
-        else:
+        """Print what a callback has lost, but for a Ctrl-C."""
+        if not isinstance(lost.exc_value, CtrlC):
             printed(lost)
 
     signal.signal(signal.SIGINT, interrupt)
@@ -76,5 +88,6 @@ def ctrl_c() -> Iterator[list[int]]:
     try:
         yield came
     finally:
+        ended.set()
         sys.unraisablehook = printed
         signal.signal(signal.SIGINT, signal.default_int_handler)
