@@ -1,7 +1,14 @@
-"""Entry point of the command ``python -m continuum_sph``."""
+"""The program ``continuum-sph``, also ``python -m continuum_sph``."""
 
 import sys
 
-from continuum_sph.cli import main
+from porescale.common.cli.entry import command
 
-sys.exit(main())
+
+def main() -> int:
+    """Run ``continuum-sph`` with the arguments of the process; returns the exit code."""
+    return command("continuum_sph.cli")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

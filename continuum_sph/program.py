@@ -30,11 +30,13 @@ def scene_type() -> type[Scene]:
 
 
 def build(scene: Scene) -> Simulation:
-    """The simulation of a scene that passes `report`, which knows how long it took to build."""
+    """The simulation of a scene, which knows how long it took to build; raises InputError with all that `report`
+    refuses."""
     from continuum_sph.builders.simulation import Simulation
     from porescale.common.duration.quiet import moment
 
     began = moment()
+    report(scene)
     model = Simulation(scene)
     model.building = began, moment()
     return model

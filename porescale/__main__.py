@@ -1,7 +1,14 @@
-"""``python -m porescale``."""
+"""The program ``porescale``, also ``python -m porescale``."""
 
 import sys
 
-from porescale.cli.main import main
+from porescale.common.cli.entry import command
 
-sys.exit(main())
+
+def main() -> int:
+    """Run ``porescale`` with the arguments of the process; returns the exit code."""
+    return command("porescale.cli.main")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

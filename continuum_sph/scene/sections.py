@@ -117,7 +117,7 @@ class Scene(SceneBase):
         if self.soil is not None:
             faults += self.soil.faults(tank.width, tank.height, WHOLE * spacing)
             faults += self.soil.suction.faults(self) if self.soil.suction else []
-        elif not self.water.column:
+        elif not self.water.column and not self.reservoir:  # which is refused below
             faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
         faults += reservoir_faults(self.reservoir, self.soil, self.inner, spacing)
         if self.soil is not None:

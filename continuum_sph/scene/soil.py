@@ -95,8 +95,10 @@ class SoilSection(Section):
 
     friction_angle : φ; tan φ = 0.5 of Maeda & Sakai 2004 is sin φ = 0.5, 30 degrees;  modulus : "printed" is their
     eq. 43, of plane stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would
-    settle), "none", or "unconsolidated": none, and the water of its full pores bears its weight;  permeability_law :
-    how k follows the porosity;  floor, sides : of the tank, "hold" the soil or let it "slip".
+    settle), "none", or "unconsolidated": none, and the water of its full pores bears its weight;  permeability : the
+    hydraulic conductivity k of full pores, under 9.81 m/s² whatever the scene's gravity is, but with ``suction`` under
+    that of the scene;  permeability_law : how k follows the porosity;  floor, sides : of the tank, "hold" the
+    soil or let it "slip".
     """
 
     files: ClassVar[tuple[str, ...]] = ("material",)
@@ -120,7 +122,10 @@ class SoilSection(Section):
     cohesion: float = quantity("Pa", 0.0, ge=0, le=1e9, help="cohesion")
     tension: float = quantity("Pa", 0.0, ge=0, le=1e9, help="largest tension")
     elastic: bool = pydantic.Field(False, description="never yields")
-    permeability: float = quantity("m/s", 1e-3, ge=1e-12, le=10, help="k at the porosity of the start, under 9.81 m/s2")
+    permeability: float = quantity(
+        "m/s", 1e-3, ge=1e-12, le=10,
+        help="k of full pores at the porosity of the start; under 9.81 m/s2, with soil.suction under gravity",
+    )  # fmt: skip
     permeability_law: Literal["constant", "kozeny-carman"] = pydantic.Field(
         default="constant", description="how permeability follows the porosity"
     )

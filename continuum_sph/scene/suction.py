@@ -11,7 +11,8 @@ if TYPE_CHECKING:
 
 
 class SuctionSection(Section):
-    """Retention of van Genuchten 1980, relative permeability of Mualem 1976, Bishop's effective stress with χ = S_e.
+    """Retention of van Genuchten 1980, relative permeability of Mualem 1976, a share of ``soil.permeability``, Bishop's
+    effective stress with χ = S_e.
 
     S = S_r + (1 - S_r) [1 + (alpha ψ)^n]^-(1 - 1/n) at a suction of ψ metres of water.  At the start pores have either
     one ``saturation`` everywhere, or are at rest over a ``water_table``.  The water of the pores is then carried by the

@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.builders.checks.packing import check_room
 from porescale.builders.checks.rectangle_places import check_rectangles
 from porescale.builders.checks.wall_places import across_walls
-from porescale.builders.initial.placed import hand_names, placed
+from porescale.builders.initial.placed import hand_names, packed_count, placed
 from porescale.builders.initial.rectangles import beside
 from porescale.common.core.constants import EDGE
 from porescale.common.core.errors import Fault, InputError
@@ -45,6 +46,8 @@ def check_grain_places(scene: Scene, sizes: tuple[float, float, float] | None, f
         if _wider_than_a_period(scene, faults):
             return
     elif _too_short(scene.domain, sizes[2], skin, faults):
+        return
+    if packing and not scene.rock and not check_room(packing, packed_count(scene), faults):
         return
     if packing:
         _check_packing(packing, scene.domain, scene.gate, faults)
@@ -166,9 +169,11 @@ def _check_packing(packing: Packing, domain: Domain, gate: Gate | None, faults: 
     head = packing.bottom + packing.packing_fraction * packing.height / Pile.fraction + packing.diameter
     if packing.settle and top <= domain.height * (1 + EDGE) < head:
         problem = f"is placed up to {head:.4g} m before it settles, above the box of {domain.height:g} m"
-        faults.append(
-            Fault("grains.packing.height", packing.height, problem, "m", repair=f"make the box {head:.4g} m high")
-        )
+        key, value = "grains.packing.height", packing.height
+        if packing.diameter > packing.height and not (packing.sizes or packing.grading):  # a diameter is added on top
+            key, value = "grains.packing.diameter", packing.diameter
+        repair = f"make the box {head:.4g} m high"
+        faults.append(Fault(key, value, problem, "m", repair=repair))
     if gate and packing.left * (1 + EDGE) < gate.x < right * (1 - EDGE):
         problem = f"stands in the packing, which reaches from {packing.left:g} to {right:g} m"
         faults.append(Fault("gate.x", gate.x, problem, "m", repair="move one of them"))

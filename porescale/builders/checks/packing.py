@@ -1,7 +1,11 @@
-"""A packing that is pressed together fills the box, and its friction has springs to act on."""
+"""The grains of a packing fit its rectangle; one that is pressed together fills the box, and its friction has springs
+to act on."""
 
 from porescale.builders.initial.contact_laws import law_class, merged
+from porescale.builders.initial.packing import drawn_radii, radii_of
 from porescale.common.core.errors import Fault
+from porescale.common.neighbors.placement import DENSEST
+from porescale.dem.prepare.settle import Pile
 from porescale.scene.packing import SAME, Packing
 from porescale.scene.scene import Scene
 
@@ -41,3 +45,32 @@ def _without_effect(scene: Scene, packing: Packing) -> list[Fault]:
             repair = "give contact.tangential_stiffness, half of the normal one say, or leave it out"
             faults.append(Fault(f"grains.packing.{key}", value, problem, repair=repair))
     return faults
+
+
+def check_room(packing: Packing, count: int, faults: list[Fault]) -> bool:
+    """Whether each grain fits the rectangle that it is placed in; a fault that names the sizes where one does not.
+
+    count : of the packing's grains.  A packing that settles is placed above its lower edge over its width, as high as
+    it needs (`Pile.top`); any other in its rectangle.  Sizes are drawn as the run draws them, with the same seed.
+    """
+    radii, size = radii_of(packing), (packing.width, packing.height)
+    pile = Pile((0.0, 0.0), packing.width, count, packing.diameter, 1.0, packing.size_spread, seed=packing.seed,
+                given=() if radii is None else tuple(radii.tolist()))  # fmt: skip
+    if packing.settle:
+        size = packing.width, pile.top()
+    most = packing.diameter * (1.0 + packing.size_spread)
+    placed = packing.settle or packing.packing_fraction <= DENSEST
+    if radii is None and placed and packing.diameter <= min(size) < most:  # drawn only where it depends on them
+        radii = pile.radii() if packing.settle else drawn_radii(packing)
+    largest = packing.diameter if radii is None else 2.0 * float(radii.max(initial=0.0))
+    room = min(size)
+    if largest <= room:
+        return True
+    problem = f"the largest grain, {largest:.4g} m, is wider than the {room:.4g} m across of where it is placed"
+    repair = "make the grains smaller, or the rectangle larger"
+    if key := next((key for key in ("sizes", "grading") if getattr(packing, key)), None):
+        faults.append(Fault(f"grains.packing.{key}", None, problem, repair=repair))
+    else:
+        allowed = f"<= {room * packing.diameter / largest:.4g}"
+        faults.append(Fault("grains.packing.diameter", packing.diameter, problem, "m", allowed, repair))
+    return False

@@ -8,6 +8,7 @@ import numpy as np
 from porescale.common.core.errors import InputError, PorescaleWarning
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.grading import given_radii, graded_radii, lognormal_radii
+from porescale.common.neighbors.placement import draw_radii
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
 from porescale.dem.grains import Grains
@@ -41,6 +42,18 @@ def radii_of(packing: Packing) -> Floats | None:
         even = (np.arange(count) + 0.5) / count
         return np.asarray(0.5 * packing.diameter * (1.0 + spread * (2.0 * even - 1.0)))
     return None
+
+
+def drawn_radii(packing: Packing) -> Floats:
+    """Radii (n,) m of the plain packing that stays where it is placed, drawn with its seed as `place` draws them.
+
+    Raises InputError, by the keys of [grains.packing], where its fraction is denser than discs can be placed.
+    """
+    rng, area = np.random.default_rng(packing.seed), packing.width * packing.height
+    try:
+        return draw_radii(area, packing.diameter, packing.size_spread, None, packing.packing_fraction, rng)
+    except InputError as error:
+        raise by_packing(error) from None
 
 
 def compressed(

@@ -14,13 +14,11 @@ from cyclopts import App, CycloptsError, Parameter, Token, convert
 
 from porescale.common.cli import bench, cases, check, completion, measure, new, run, schema, show, study, sweep, verify
 from porescale.common.cli.diagnostics import printed
+from porescale.common.cli.entry import INTERRUPTED
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import InputError, PorescaleError
 from porescale.common.page import command as report
 from porescale.common.watch import command as watch
-
-INTERRUPTED = 130
-"""Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
 
 QUOTA = getattr(errno, "EDQUOT", errno.ENOSPC)
 OF_THE_MACHINE = (errno.ENOSPC, QUOTA, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.EFBIG)

@@ -34,11 +34,13 @@ def command(package: Package) -> Callable[..., int]:
         picture: Drawing = None,
     ) -> int:
         """Say what a scene means (resolution, stability, cost) without running it; warn or refuse."""
+        from porescale.common.record.progress import Watch
         from porescale.common.schema.sections import load
 
         file = None if picture is None else drawing(*picture)
         read = load(require_scene(scene, package.name), package.scene(), quality=quality, overrides=settings or ())
-        report = package.report_of(read)
+        with Watch(read.name, 0.0, 0.0):  # a packing may have to be made to know what stands in it
+            report = package.report_of(read)
         if json:
             print(json_text.dumps(report.as_dict(), indent=1))
         else:

@@ -64,7 +64,8 @@ def command(package: Package) -> Callable[..., int]:
         card = card_of(package, read)
         if chosen is not None:
             card["picked"] = chosen.as_dict()
-        warnings = package.report_of(read).warnings  # what contradicts itself is refused
+        with Watch(read.name, 0.0, 0.0, quiet=quiet):
+            warnings = package.report_of(read).warnings  # what contradicts itself is refused
         if resume:
             check_scene_resume(package, folder, card)
         use_threads(threads)  # numba counts them; unless moving frames were to be checked, it is imported only now

@@ -2,7 +2,7 @@
 
 import time as clock
 from collections.abc import Callable, Mapping
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -95,26 +95,28 @@ def drive(
     for sampler in samplers:
         sampler.restart()
         schedules[f"every {sampler.name}"] = sampler.schedule
-    folder.mkdir(parents=True, exist_ok=True)
-    with owned(folder) as held:
-        if not held:
-            raise folder_in_use(folder)
-        clean(folder)
-        run = _Run(model, duration, step_seconds, schedules, samplers, checkpoint_seconds, meanwhile)
-        name = str(card.get("name") or folder.name)
-        resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
-        if resume:
-            check_changes(folder, card, today)
-            done = _already(folder, run)
-            if done is not None:
-                text = f"{folder}: finished at t = {done.time:.6g} s, nothing to do"
-                Watch(name, 0, duration, quiet=quiet).say(text)
-                return done
-            record = Record.resumed(folder, card, model, schedules)
-        else:
-            record = Record.fresh(folder, card, overwrite=overwrite)
-        with Watch(name, model.time, duration, quiet=quiet, finish=finish) as watch:
-            return _watched(run, record, watch, after)
+    with ExitStack() as until_stepped:
+        stop = until_stepped.enter_context(polite_stop())  # a stop waits until the folder holds a state to go on from
+        folder.mkdir(parents=True, exist_ok=True)
+        with owned(folder) as held:
+            if not held:
+                raise folder_in_use(folder)
+            clean(folder)
+            run = _Run(model, duration, step_seconds, schedules, samplers, checkpoint_seconds, meanwhile)
+            name = str(card.get("name") or folder.name)
+            resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
+            if resume:
+                check_changes(folder, card, today)
+                done = _already(folder, run)
+                if done is not None:
+                    text = f"{folder}: finished at t = {done.time:.6g} s, nothing to do"
+                    Watch(name, 0, duration, quiet=quiet).say(text)
+                    return done
+                record = Record.resumed(folder, card, model, schedules)
+            else:
+                record = Record.fresh(folder, card, overwrite=overwrite)
+            with Watch(name, model.time, duration, quiet=quiet, finish=finish) as watch:
+                return _watched(run, record, watch, (stop, until_stepped), after)
 
 
 def check_resume(folder: Path, card: dict[str, Any], today: Today | None = None) -> None:
@@ -153,11 +155,18 @@ class _Run:
         return max(1, round(self.duration / self.step_seconds))
 
 
-def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], object] | None) -> Outcome:
-    """The loop, and how it may end."""
+def _watched(
+    run: _Run,
+    record: Record,
+    watch: Watch,
+    stopping: tuple[StopRequest, ExitStack],
+    after: Callable[[Path], object] | None,
+) -> Outcome:
+    """The loop, and how it may end; stopping : the request, and what ends waiting for it once all steps are done."""
     model, began = run.model, moment()
+    stop, until_stepped = stopping
     try:
-        with polite_stop() as stop:
+        with until_stepped:
             spent = _loop(run, record, stop, watch)
         stepped = moment()
         watch.enter("joining snapshots")
@@ -225,6 +234,14 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> _Spent:
         _record_due(run, record)
         record.save(model, run.schedules)
     while not run.ended(model.step, model.time):
+        if stop:
+            if record.saved_step != model.step:
+                model.check()
+                record.save(model, run.schedules)
+            raise Interrupted(
+                f"interrupted at step {model.step} (t = {model.time:.6g} s); state saved in "
+                f"{record.folder / CHECKPOINT}, resume to continue"
+            )
         start, busy, before, compiled = clock.perf_counter(), clock.process_time(), model.step, TURNS.seconds
         last = None if run.step_seconds is None else run.last_step
         model.advance(block(model, last, run.schedules.values(), rate))
@@ -237,13 +254,6 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> _Spent:
         spent.compiling += TURNS.seconds - compiled
         watch.update(model.step, model.time)
         _after_block(run, record)
-        if stop and not run.ended(model.step, model.time):
-            model.check()
-            record.save(model, run.schedules)
-            raise Interrupted(
-                f"interrupted at step {model.step} (t = {model.time:.6g} s); state saved in "
-                f"{record.folder / CHECKPOINT}, resume to continue"
-            )
     model.check()
     if record.row_step != model.step:
         record.row(model, scheduled=False)

@@ -16,6 +16,7 @@ from rich.progress import (
 from rich.text import Text
 
 from porescale.common.compiled.turns import TURNS
+from porescale.common.duration.doing import NOW
 from porescale.common.duration.quiet import Moment, moment, share
 from porescale.common.record.cost import UNCOUNTED
 
@@ -35,6 +36,7 @@ class Watch:
 
     quiet : nothing at all.  On a terminal a bar appears after two seconds, in a notebook one line that is written over;
     otherwise plain lines on stderr, the first after ten seconds.  A kernel that is being compiled is named.
+    end : 0 where nothing runs, as of ``check``.
     finish : seconds that joining, pictures and film are expected to take after the last step on a quiet machine.
     """
 
@@ -84,7 +86,8 @@ class Watch:
 
     def doing(self) -> str:
         """What happens now, in words."""
-        return f"{self.phase}, compiling kernel {TURNS.count}, {TURNS.name}" if TURNS.name else self.phase
+        phase = NOW[-1].name if NOW else self.phase
+        return f"{phase}, compiling kernel {TURNS.count}, {TURNS.name}" if TURNS.name else phase
 
     def say(self, text: str) -> None:
         """Print one line of text, unless quiet."""
@@ -94,12 +97,14 @@ class Watch:
     def left(self) -> float | None:
         """Seconds left, all that follows the steps included; None while unknown, and once that lasts too long.
 
+        Before the first step, those left of what is done then (`doing`).
+
         Steps are expected to go on at their mean speed, rows, snapshots and checkpoints included, and what follows at
         the share of a core that they got.  The first blocks do not count, nor compiling, nor time in which the process
         was stopped.
         """
         if self.running is None:
-            return None
+            return NOW[-1].left() if NOW else None
         since, now = self.running
         finish = self.finish / share(since, now)
         if self.finishing_since is not None:
@@ -111,7 +116,10 @@ class Watch:
         return spent * (self.end - self.time) / (self.time - self.start) + finish
 
     def line(self) -> str:
-        """Progress of the run as one line of text."""
+        """Progress of the run as one line of text; before there is one, since when something is done."""
+        if self.end == 0.0:
+            left, since = self.left(), duration(clock.perf_counter() - self.began)
+            return f"{self.title}: {self.doing()}, {since} so far" + (f", {duration(left)} left" if left else "")
         share = min(100.0, 100 * self.time / self.end) if self.end else 100.0  # the last step may go beyond the end
         text = f"{self.title}: {self.doing()}, t = {self.time:.4g} of {self.end:.4g} s ({share:.0f} %)"
         text += f", step {self.step}"
@@ -180,7 +188,7 @@ class Watch:
                     description=f"{self.title}: {self.doing()}",
                     total=self.end if started else None,
                     completed=self.time,
-                    where=f"t = {self.time:.4g} s",
+                    where=f"t = {self.time:.4g} s" if self.end else "",
                 )
 
 

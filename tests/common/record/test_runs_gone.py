@@ -5,10 +5,12 @@ import shutil
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from porescale.common.core.errors import InputError, PorescaleError
+from porescale.common.record import card as cards
 from porescale.common.record.checkpoint import read_checkpoint
 from porescale.common.record.open_run import open_run
 from porescale.common.record.record import Gone
@@ -116,6 +118,27 @@ def test_a_polite_stop_saves_at_the_end_of_the_step_that_it_falls_into(tmp_path,
     saved = read_checkpoint(folder / "checkpoint.h5")
     assert saved["step"] == model.step < 120
     assert saved["state"]["beads"]["x"].tobytes() == model.x.tobytes()
+    assert open_run(folder).card["outcome"] == "interrupted"
+    run_toy(folder, resume=True)
+    assert differences(folder, untouched) == []
+
+
+def test_a_stop_before_the_first_step_leaves_a_run_that_can_be_gone_on_with(tmp_path, untouched, monkeypatch):
+    # It falls between the making of the folder and the first step: into the writing of the card.
+    folder, write = tmp_path / "run", cards.write_card
+
+    def interrupted(*given: Any) -> None:
+        """The card is written, and Ctrl-C comes."""
+        write(*given)
+        monkeypatch.undo()
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(cards, "write_card", interrupted)
+    model = Watched(lambda: None)
+    with pytest.raises(Interrupted, match=r"interrupted at step 0 .* resume to continue"):
+        run_toy(folder, model=model)
+    assert model.calls == []
+    whole(folder)
     assert open_run(folder).card["outcome"] == "interrupted"
     run_toy(folder, resume=True)
     assert differences(folder, untouched) == []

@@ -8,6 +8,7 @@ from rich.console import Console
 
 from porescale.common.compiled.turns import TURNS
 from porescale.common.duration import quiet
+from porescale.common.duration.doing import doing
 from porescale.common.record import progress
 from porescale.common.record.cost import UNCOUNTED
 from porescale.common.record.progress import STARTING, Watch, duration
@@ -214,6 +215,23 @@ def worst(watch, now, ends, finish):
     if left is not None:
         errors.append(abs(left / (finish / 2) - 1.0))
     return max(errors), left
+
+
+def test_what_takes_long_before_the_first_step_is_named_with_the_time_left(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr("time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("porescale.common.duration.doing.load_now", lambda: 2.0)  # beside another process
+    watch = Watch("dam", 0.0, 0.0)
+    assert watch.line() == "dam: starting, 0 s so far"
+    with doing("settling the packing", 30.0):
+        now[0] = 12.0
+        assert watch.line() == "dam: settling the packing, 12 s so far, 48 s left"
+        now[0] = 70.0
+        assert watch.line() == "dam: settling the packing, 1 min 10 s so far"  # longer than was expected
+    assert watch.left() is None
+    run = Watch("dam", 0.0, 2.0)
+    with doing("settling the packing", 30.0):
+        assert run.line() == "dam: settling the packing, t = 0 of 2 s (0 %), step 0, 1 min 00 s left"
 
 
 @pytest.mark.parametrize(("seconds", "said"), [(8.2, "8 s"), (200, "3 min 20 s"), (7500, "2 h 05 min")])

@@ -3,6 +3,7 @@ twice."""
 
 import pytest
 
+from continuum_sph import build, check
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
@@ -129,3 +130,41 @@ def test_a_spacing_too_large_for_a_side_is_what_is_wrong_with_its_face():
         scene(**full, face=[face], numerics={"spacing": 0.5})
     with pytest.raises(InputError, match=r"face\[0\]\.start = 0\.3 m"):  # the side has two rows, the face has not
         scene(**full, face=[face | {"start": 0.3}], numerics={"spacing": 0.25})
+
+
+WET = {"water": WATER, "soil": {"porosity": 0.4, "permeability": 0.01}}
+IMAGES = {"tank": {"width": 1.0, "height": 0.5, "wall_particles": "images"}}
+BUBBLE = {
+    "inclusion": {"density": 500, "disc": [{"x": 0.15, "y": 0.15, "radius": 0.15}]},
+    "numerics": {"spacing": 0.025},
+}
+UNFIT = [
+    ({"water": WATER | {"sound_speed": 3.0}}, r"water\.sound_speed = 3\.0 m/s: makes the fall of the water Mach"),
+    (WET | IMAGES, r"tank\.wall_particles.*cannot be with soil"),
+    (WET | BUBBLE, r"inclusion.*cannot be with soil"),
+]
+
+
+@pytest.mark.parametrize(("changes", "said"), UNFIT, ids=["soft", "images", "inclusion"])
+def test_what_check_refuses_is_not_built_either(changes, said):
+    for act in (check, build):
+        with pytest.raises(InputError, match=said):
+            act(scene(**changes))
+    assert build(scene(**WET)).step == 0  # the check that fails: without the change it is built
+
+
+def test_a_reservoir_without_soil_is_refused_in_one_line_and_beside_soil_it_fills_an_empty_tank():
+    given = scene().model_dump(mode="json", exclude_unset=True)
+    empty = {key: given[key] for key in ("tank", "numerics", "time", "output")}
+    with pytest.raises(InputError) as refused:
+        validate(Scene, empty | {"reservoir": [POOL]})
+    assert [fault.line() for fault in refused.value.faults] == ["reservoir = 'given': needs soil beside it; add [soil]"]
+    with pytest.raises(InputError, match=r"^water\.column: is missing; give at least one rectangle of water$"):
+        validate(Scene, empty)  # the check that fails: without the reservoir it is the column
+    filled = build(scene(soil={"held": True}, reservoir=[POOL | {"level": None, "rise": [[0, 0], [0.1, 0.2]]}]))
+    assert filled.series()["mass (kg/m)"] == 0.0
+    while filled.time < 0.1:
+        filled.advance(1)
+    row = filled.series()
+    # Three columns of particles, 2.5 kg/m each, and the level is known to a row: three of four rows at least.
+    assert row["mass (kg/m)"] == row["river let in (kg/m)"] - row["river let out (kg/m)"] >= 3 * 3 * 2.5
