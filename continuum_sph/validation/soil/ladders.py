@@ -8,7 +8,14 @@ import numpy as np
 
 from continuum_sph.soil import Rate
 from continuum_sph.validation.soil import fast_flow
-from continuum_sph.validation.soil.run_outs import BEADS, GLASS, SAND, Grains, run_outs
+from continuum_sph.validation.soil.run_outs import (
+    BEADS,
+    RUBBING_BEADS,
+    RUBBING_SAND,
+    SAND,
+    Grains,
+    run_outs,
+)
 from continuum_sph.validation.soil.setups import TAN_PHI
 from continuum_sph.validation.soil.slopes import NEAR, slope, strewn_friction, sunk
 from porescale.common.evidence.convergence import Ladders
@@ -88,7 +95,8 @@ def run_out_error(grains: Grains, rate: Rate | None, rows: float) -> float:
 for name, what, grains, rate in (
     ("sand", "sand", SAND, None),
     ("beads", "glass beads", BEADS, None),
-    ("beads_that_rub", "glass beads of 1 mm whose friction grows with the rate of shear", BEADS, GLASS),
+    ("rubbing_sand", "sand of 0.8 mm whose friction grows with the rate of shear", SAND, RUBBING_SAND),
+    ("rubbing_beads", "glass beads of 1 mm whose friction grows with the rate of shear", BEADS, RUBBING_BEADS),
 ):
     LADDERS.ladder(
         f"soil.run_out_of_{name}",

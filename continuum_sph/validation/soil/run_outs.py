@@ -58,10 +58,18 @@ SAND = Grains(30.0, 1.2, 1.9, 2.3)
 BEADS = Grains(22.0, 1.8, 2.3, 3.0)
 
 
-RUBBING = math.tan(math.radians(32.76)) - math.tan(math.radians(20.90))
-GLASS = Rate(math.tan(math.radians(BEADS.repose)) + RUBBING, inertial_number=0.279, grain_diameter=1e-3)
-"""How the friction of glass beads grows (Jop, Forterre & Pouliquen, Nature 441 (2006) 727: 20.90° to 32.76°, I0 0.279),
-from that of their angle of repose on; beads of 1 mm."""
+def faster(grains: Grains, slow: float, fast: float, inertial_number: float, diameter: float) -> Rate:
+    """Friction of ``grains`` that grows by as much as from a slope of ``slow`` to one of ``fast``, degrees;
+    diameter : m."""
+    growth = math.tan(math.radians(fast)) - math.tan(math.radians(slow))
+    return Rate(min(1.0, math.tan(math.radians(grains.repose)) + growth), inertial_number, diameter)
+
+
+RUBBING_BEADS = faster(BEADS, 20.90, 32.76, 0.279, 1e-3)
+"""Glass beads of 1 mm: Jop, Forterre & Pouliquen, Nature 441 (2006) 727."""
+RUBBING_SAND = faster(SAND, 27.0, 43.4, 1.1, 0.8e-3)
+"""Sand of 0.8 mm: Forterre & Pouliquen, J. Fluid Mech. 486 (2003) 21: β 0.65, L 2.03 d, without the offset of their
+law; I0 = 5 β d/(2 L √(φ cos θ)) as Jop et al. have it, with a solid fraction φ of 0.6."""
 
 
 def let_go(aspect: float, rows: int, repose: float, rate: Rate | None = None) -> tuple[SoilFlow, float, float]:
