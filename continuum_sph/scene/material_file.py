@@ -12,6 +12,7 @@ from typing import Any
 
 import pydantic
 
+from continuum_sph.scene.rate import RateSection
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.given_file import given_bytes, reason
@@ -74,18 +75,6 @@ class Pores(Section):
     permeability: float = quantity("m^2", gt=0)
 
 
-class Rate(Section):
-    """How friction grows with the rate of shear, sin φ(I) = sin φ_c + (sin φ_fast - sin φ_c) I/(I0 + I).
-
-    I = γ̇ d √(ρs/p), γ̇ the difference of the principal rates of strain in the plane, p the mean stress there, ρs the
-    density of grains.  grain_diameter : d;  friction_angle : φ_fast;  inertial_number : I0.
-    """
-
-    grain_diameter: float = quantity("m", gt=0)
-    friction_angle: float = quantity("rad", gt=0, lt=0.5 * math.pi)
-    inertial_number: float = quantity("", gt=0)
-
-
 class MaterialFile(Section):
     """The contents of a material file, see `porescale homogenise`."""
 
@@ -93,7 +82,7 @@ class MaterialFile(Section):
     soil: Taken
     strength: Strengths
     pores: Pores | None = None
-    rate: Rate | None = None
+    rate: RateSection | None = None
     measured: dict[str, Known] = pydantic.Field(default_factory=dict)
     made: dict[str, Any] = pydantic.Field(default_factory=dict, description="how the file was made")
 

@@ -9,8 +9,10 @@ from porescale.common.schema.sections import Section, quantity
 class RateSection(Section):
     """Friction of grains that are sheared fast, of Jop, Forterre & Pouliquen 2006: see `continuum_sph.soil.material`.
 
-    Glass beads have 32.8 degrees and 0.279, beyond 20.9 at rest.  A material file of `porescale homogenise` with rates
-    has all three.
+    sin φ(I) = sin φ + (sin φ∞ - sin φ) I/(I0 + I), I = γ' d √(ρs/p), γ' the difference of the principal rates of strain
+    in the plane, p the mean stress there, ρs the density of the grains.  friction_angle : φ∞;  inertial_number : I0;
+    grain_diameter : d.  Glass beads have 32.8 degrees and 0.279, beyond 20.9 at rest.  A material file of
+    `porescale homogenise` with rates has all three.
     """
 
     friction_angle: float = quantity("rad", ge=0, le=1.4, help="angle of friction of the fastest flow")
