@@ -121,7 +121,9 @@ class SoilFlow:
         max_sound2 = deform(
             soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.separation_strain,
             soil.plastic_shear, soil.record,
-            Straining(step, min(step, LASTING * self.strained), spin, law.most, law.damping / law.smoothing.length),
+            Straining(
+                step, min(step, LASTING * self.strained), spin, law.most, law.damping / law.smoothing.length, law.even
+            ),
         )  # fmt: skip
         self.strained = step
         self.sound_rate = float(max_sound2) ** 0.5 / law.smoothing.length

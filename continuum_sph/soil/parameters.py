@@ -1,9 +1,11 @@
 """Parameters of the particles of a soil, and the time steps that they allow."""
 
+import functools
+import math
 from dataclasses import dataclass
 
 from continuum_sph.soil.material import Material
-from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.smoothing import Smoothing, kernel_slope, kernel_value
 from porescale.common.core.errors import Fault, InputError
 
 FALL = 7.0
@@ -15,7 +17,23 @@ spacings; the spline 1.97): 0.91 h/(α c).  What is left is for particles that c
 PARTED = 0.25
 """Largest A γ' Δt of particles that part.  One between two others, δ nearer to one of them than a spacing, goes back by
 4 A γ' Δt δ: where it was at most, not beyond."""
+STREWN = 1.025
+"""`stress.CROWD` over a lattice's up to which nothing swells: as much as particles strewn by a fifth of a spacing have,
+1.022 in the mean, so that disorder alone lifts no ground."""
 RULES = ("sound", "acceleration", "other layers")
+
+
+@functools.cache
+def even_crowd(smoothing: Smoothing, spacing: float) -> float:
+    """`stress.CROWD` of a square lattice of particles at ``spacing`` (m): spacing² Σ -(1/r) W' over 2π W(0).
+
+    Equilateral triangles of as many particles an area have as much (0.6724, the square lattice 0.6727, at h = 1.35
+    spacings, Wendland C2), so what is more is crowded, not ordered otherwise.
+    """
+    kind, h = smoothing.kind, smoothing.length
+    reach = range(-math.ceil(smoothing.support / spacing), math.ceil(smoothing.support / spacing) + 1)
+    slopes = [kernel_slope(kind, math.hypot(i, j) * spacing / h, h) for i in reach for j in reach if i or j]
+    return -(spacing**2) * math.fsum(slopes) / (2.0 * math.pi * float(kernel_value(kind, 0.0, h)))
 
 
 @dataclass(frozen=True)
@@ -80,6 +98,11 @@ class SoilLaw:
         """Rate of shear strain (1/s) up to which particles part in a ``step`` (s)."""
         taken = self.spacing_recovery * step
         return PARTED / taken if taken > 0.0 else float("inf")
+
+    @property
+    def even(self) -> float:
+        """`stress.CROWD` beyond which sheared soil swells; infinite where particles do not part either."""
+        return STREWN * even_crowd(self.smoothing, self.spacing) if self.spacing_recovery > 0.0 else math.inf
 
     def limits(self, acceleration: float, sound_rate: float, others: float) -> tuple[float, float, float]:
         """Steps allowed by sound, acceleration (m/s²) and other layers (s), s: eq. 49.

@@ -5,6 +5,11 @@ the middle are G = G' (1 - Δt/2 G')⁻¹, and skew for every rigid turning, whe
 turned by 90° would strain itself.  Density: ρ' = ρ det(1 - Δt G'), exact for uniform G', and less by the volume that
 diffused to a particle, see `momentum`.
 
+Density follows velocities, so it does not see particles that shear has brought nearer to each other than a lattice has
+them: rows that slide over each other stand as equilateral triangles do, 15 % denser, and what slides far sinks.  So
+where `CROWD` is more than a lattice's (`parameters.even_crowd`), stress takes soil to have lost the excess per shear
+strain, tr G less γ' (CROWD/even - 1)⁺, and pushes until it has its room.  Soil that is not sheared has none of it.
+
 What pushes is T = σ K + t J, t = rest σ : J (1 - M)/tr M, so that Σ V σ : G is the work of T in the plain sums for
 any velocities: see `gradient` for J and rest.  Rigid turning takes no work, and forces no angular momentum.
 """
@@ -31,13 +36,15 @@ CROWDED = 1.6
 
 class Straining(NamedTuple):
     """step, s;  spreading: for how long diffusion lasts, s;  spin: 1, or -1 for the sign of eq. 38 in Maeda & Sakai
-    2004;  most: shear strain of a step that `accelerate` follows;  damping: α/h, 1/m."""
+    2004;  most: shear strain of a step that `accelerate` follows;  damping: α/h, 1/m;  even: `CROWD` beyond which
+    sheared soil swells."""
 
     step: Any
     spreading: Any
     spin: Any
     most: Any
     damping: Any
+    even: Any
 
 
 @parallel_kernel
@@ -64,6 +71,8 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
         gyy = whole * (ayy * (1.0 - half * axx) + half * axy * ayx)
         gxy = whole * axy
         gyx = whole * ayx
+        shearing = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
+        swelling = 0.5 * shearing * max(0.0, spread[i, CROWD] / straining.even - 1.0)  # along each axis
         strain_xy = 0.5 * (gxy + gyx)
         turn_xy = 0.5 * spin * (gxy - gyx)
         xx, yy, xy, zz, opened, flow = new_stress(
@@ -71,7 +80,8 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
                 stress[i, XX] + spreading * spread[i, XX], stress[i, YY] + spreading * spread[i, YY],
                 stress[i, XY] + spreading * spread[i, XY], stress[i, ZZ] + spreading * spread[i, ZZ],
             ),
-            spread[i, EXCESS], (gxx, strain_xy + turn_xy, strain_xy - turn_xy, gyy), step, separation_strain[i], row,
+            spread[i, EXCESS], (gxx - swelling, strain_xy + turn_xy, strain_xy - turn_xy, gyy - swelling), step,
+            separation_strain[i], row,
         )  # fmt: skip
         shrunk = (1.0 - step * axx) * (1.0 - step * ayy) - step * step * axy * ayx
         density[i] *= shrunk * record[i, VOLUME] / (record[i, VOLUME] + spreading * spread[i, GROWN])
@@ -88,7 +98,6 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
         kyy = matrix[i, 2]
         taken = straining.damping * np.sqrt(speed2) * step * max(1.0, spread[i, CROWD])
         record[i, SOUND_OVER_DENSITY] = np.sqrt(speed2) / density[i] * (DAMPED_MOST / max(DAMPED_MOST, taken))
-        shearing = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
         bound = most / max(1.0, spread[i, CROWD] / CROWDED)
         record[i, SHEAR_RATE] = shearing if shearing * step <= bound else bound / step
         turn = (xx - yy) * matrix[i, 3] - xy * matrix[i, 4]

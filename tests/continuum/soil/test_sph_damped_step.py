@@ -58,7 +58,7 @@ def test_damping_beyond_what_a_step_follows_is_weaker(monkeypatch):
 
 def test_a_step_of_sound_alone_lets_it_swing_ever_wider(monkeypatch):  # the twin of both that must fail
     monkeypatch.setattr(parameters, "DAMPED", np.inf)
-    monkeypatch.setattr(flow, "Straining", lambda *given: Straining(*given[:-1], 0.0))
+    monkeypatch.setattr(flow, "Straining", lambda *given: Straining(*given)._replace(damping=0.0))
     assert swiftest(4.5) > 1.5 * FREE
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.soil import Material, Rate, SoilLaw
+from continuum_sph.soil import Material, Rate, SoilLaw, parameters
 from continuum_sph.validation.soil import bodies, element, energy, fast_flow, run_outs, setups, slopes
 from tests.reference.continuum import continuum_cases
 from tests.reference.continuum.continuum_cases import missed
@@ -75,6 +75,13 @@ def test_soil_whose_particles_part_no_faster_than_stress_diffuses_sinks_into_its
     # 0.031 m after 4 s, and 0.13 m after 6 s: as it was
     monkeypatch.setattr(SoilLaw, "parted", lambda law, step: law.most / step if step > 0.0 else math.inf)
     assert slopes.sunk.__wrapped__(20) > tolerance("continuum.soil_that_slides_keeps_its_height")
+
+
+@pytest.mark.slow
+def test_fine_soil_that_does_not_swell_where_it_crowds_sinks(monkeypatch):
+    # 0.045 m with 80 rows
+    monkeypatch.setattr(parameters, "STREWN", math.inf)
+    assert slopes.sunk.__wrapped__(80) > tolerance("continuum.soil_that_slides_keeps_its_height")
 
 
 @pytest.mark.slow
