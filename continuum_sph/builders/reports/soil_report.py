@@ -52,7 +52,7 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
         out.row("stress ratio at failure", (1.0 + math.sin(phi)) / (1.0 - math.sin(phi)), "", "without cohesion")
         limit = math.atan(math.sin(phi) * math.cos(psi) / (1.0 - math.sin(phi) * math.sin(psi)))
         out.row("angle at which an endless slope shears", math.degrees(limit), "degrees", "without cohesion")
-    report_rate(out, section)
+    report_rate(out, section, wet=section.suction is not None)
     out.heading("steps")
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
     step = min(limits)
@@ -69,13 +69,11 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
     return out
 
 
-def report_rate(out: Report, section: SoilSection, wet: bool = False) -> None:
+def report_rate(out: Report, section: SoilSection, *, wet: bool) -> None:
     """Add to a report how the friction of a soil grows with the rate of shear, and warn of ``wet`` soil."""
     rate = section.rate
     if rate is None:
         return
-    if wet:
-        out.heading("strength")
     fastest = math.degrees(math.atan(math.sin(rate.friction_angle)))
     out.row("angle beyond which it speeds up without end", fastest, "degrees", "without cohesion and dilatancy")
     pace = math.sqrt(GRAVITY / section.height)

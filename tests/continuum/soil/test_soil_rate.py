@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import continuum_sph
 from continuum_sph.builders.parts.soil import material_of
 from continuum_sph.builders.report import report
 from continuum_sph.scene.sections import Scene
@@ -13,6 +14,7 @@ from continuum_sph.soil.material import RATE_PACE, RATE_STRENGTH
 from continuum_sph.soil.plasticity import new_stress
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
+from tests.reference.folders import CASES
 
 FAST = Rate(sin_friction=0.8, inertial_number=0.3, grain_diameter=1e-3)
 STILL = Material(1e6, 1590.0, sin_friction=0.5)
@@ -100,6 +102,12 @@ def test_check_says_what_the_rate_does_and_warns_in_water():
     wet = report(scene(GIVEN, saturated=True))
     assert [line for line in wet.warnings if "is of dry grains" in line]
     assert "inertial number of its own fall" not in {r.name for g in report(scene(None)).groups.values() for r in g}
+
+
+def test_check_warns_of_wet_pores_too():
+    given = 'soil.rate={friction_angle="40 degree", inertial_number=0.3, grain_diameter=0.001}'
+    wet = report(continuum_sph.load(CASES / "levee_by_suction", settings=[given]))
+    assert [line for line in wet.warnings if "is of dry grains" in line]
 
 
 @pytest.mark.parametrize(
