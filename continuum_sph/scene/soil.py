@@ -82,7 +82,13 @@ class SoilNumerics(Section):
         "", None, ge=0, le=1000, help="diffusion of stress and volume per shear strain"
     )
     restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="the same by sound: soil creeps")
-    parting: float = quantity("", 4.0, ge=0, le=20, help="how fast particles too near part, per shear strain")
+    parting: float = quantity(
+        "",
+        4.0,
+        ge=0,
+        le=20,
+        help="how fast particles too near part, per shear strain; 0: soil that crowds does not swell either",
+    )
     repulsion: float = quantity("", 10.0, ge=0, le=100, help="what keeps soil that bears tension from clumping")
     settle: float = quantity("s", 0.0, ge=0, le=1e6, help="time at the start while motion is braked")
 

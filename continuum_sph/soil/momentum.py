@@ -16,7 +16,7 @@ carry its weight, so soil at rest creeps.  In the same way particles nearer than
 (1 - r²/spacing²), only while soil is sheared, and away from walls.  Both are opposite in a pair of soil.  Each has its
 own bound on γ' Δt, `parameters.SoilLaw.most` and `PARTED`: diffusion is far the stiffer, and particles that parted at
 its bounded rate would crowd where soil shears fast, on the floor of a layer that slides (by two thirds in 6 s on 32°,
-with 20 rows), as no density of theirs shows it.
+with 20 rows, if soil did not swell there, see `stress`), as no density of theirs shows it.
 
 Volumes diffuse as stress does, dV_i/dt = -χ h² γ' spacing² Σ (V_j - V_i) (1/r) W'.  Stress that diffuses no longer
 shows how much a particle is compressed, so nothing would resist: where soil slides far its density would grow without

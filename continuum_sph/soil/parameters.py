@@ -45,9 +45,9 @@ class SoilLaw:
     ``printed_damping`` of all of it between particles that approach (eq. 36);  corrected : gradients exact for linear
     fields;  diffusion : χ of stress and volume, per shear strain, see `momentum`;  sound_diffusion : the same per
     passage of sound through h, which never rests (for comparison);  spacing_recovery : A, how fast particles nearer
-    than a spacing part, per shear strain;  repulsion : A of `tension`, where soil bears tension;  drag :
-    1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin : turn stress as
-    eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49.
+    than a spacing part, per shear strain, 0: soil does not swell either;  repulsion : A of `tension`, where soil bears
+    tension;  drag : 1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin :
+    turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49.
     """
 
     smoothing: Smoothing

@@ -6,8 +6,8 @@ turned by 90° would strain itself.  Density: ρ' = ρ det(1 - Δt G'), exact fo
 diffused to a particle, see `momentum`.
 
 Density follows velocities, so it does not see particles that shear has brought nearer to each other than a lattice has
-them: rows that slide over each other stand as equilateral triangles do, 15 % denser, and what slides far sinks.  So
-where `CROWD` is more than a lattice's (`parameters.even_crowd`), stress takes soil to have lost the excess per shear
+them: rows that slide over each other stand as equilateral triangles do, 2/√3 times as dense, and what slides far sinks.
+So where `CROWD` is more than a lattice's (`parameters.even_crowd`), stress takes soil to have lost the excess per shear
 strain, tr G less γ' (CROWD/even - 1)⁺, and pushes until it has its room.  Soil that is not sheared has none of it.
 
 What pushes is T = σ K + t J, t = rest σ : J (1 - M)/tr M, so that Σ V σ : G is the work of T in the plain sums for
