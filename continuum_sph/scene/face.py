@@ -30,8 +30,8 @@ class FaceSection(Section):
     side: Literal["left", "right", "floor", "lid"] = pydantic.Field(description="side of the tank")
     head: float | None = quantity("m", None, ge=0, le=1e5, help="head over the floor: water in a pipe stands so high")
     rise: tuple[Row, ...] = pydantic.Field(default=(), description="rows of time (s) and head (m), in place of head")
-    start: float | None = quantity("m", None, ge=0, le=1e5, help="where it begins along the side")
-    end: float | None = quantity("m", None, ge=0, le=1e5, help="where it ends along the side")
+    start: float | None = quantity("m", None, ge=0, le=1e5, help="start along the side")
+    end: float | None = quantity("m", None, ge=0, le=1e5, help="end along the side")
 
     @property
     def table(self) -> tuple[Row, ...]:

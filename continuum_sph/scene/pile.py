@@ -16,7 +16,7 @@ class SheetPileSection(Section):
     above that of the tip; the flow of water is that of a sheet down to the tip (`continuum_sph.seepage.sheet_pile`).
     """
 
-    x: float = quantity("m", ge=0, le=1e5, help="where it stands; its column is the one that holds x")
+    x: float = quantity("m", ge=0, le=1e5, help="place of the pile, in the column that holds x")
     tip: float = quantity("m", ge=0, le=1e5, help="height of its lower end; soil has it to the nearest row")
     faces: Literal["slip", "hold"] = pydantic.Field(default="slip", description="whether the faces hold the soil")
 

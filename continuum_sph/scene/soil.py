@@ -66,6 +66,7 @@ class SoilNumerics(Section):
     """Numerics that damp the noise of soil particles and keep them evenly spaced; see `continuum_sph.soil.momentum`.
 
     Maeda & Sakai 2004: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
+    parting : with 0 soil does not swell where its particles crowd, either.
     damping, damping_viscosity, stress_diffusion : left out, they follow from gravity and the ground's height and
     stiffness, see `continuum_sph.soil.steadying`; "approach" has 0.2.
     """
@@ -87,9 +88,11 @@ class SoilNumerics(Section):
         4.0,
         ge=0,
         le=20,
-        help="how fast particles too near part, per shear strain; 0: soil that crowds does not swell either",
+        help="rate at which particles too near part, per shear strain",
     )
-    repulsion: float = quantity("", 10.0, ge=0, le=100, help="what keeps soil that bears tension from clumping")
+    repulsion: float = quantity(
+        "", 10.0, ge=0, le=100, help="repulsion that keeps soil that bears tension from clumping"
+    )
     settle: float = quantity("s", 0.0, ge=0, le=1e6, help="time at the start while motion is braked")
 
 

@@ -38,8 +38,8 @@ class Circles(Section):
     image_height: float | None = quantity(
         "m", None, ge=1e-9, le=1e3, help="height of the picture, where y is down (default: to the lowest circle)"
     )
-    left: float = quantity("m", 0.0, **PLACE, help="where x = 0 of the file comes to lie")
-    bottom: float = quantity("m", 0.0, **PLACE, help="where y = 0 of the file, turned upwards, comes to lie")
+    left: float = quantity("m", 0.0, **PLACE, help="place of x = 0 of the file")
+    bottom: float = quantity("m", 0.0, **PLACE, help="place of y = 0 of the file, turned upwards")
     pixel: float | None = quantity("m", None, ge=1e-9, le=1, help="size of a pixel, of a picture")
     smallest: float | None = quantity("m", None, ge=1e-9, le=1e3, help="smallest diameter looked for in a picture")
     largest: float | None = quantity("m", None, ge=1e-9, le=1e3, help="largest diameter looked for in a picture")

@@ -89,7 +89,7 @@ class Quantity(Section):
     where: dict[str, Any] | None = None
     along: str = ""
     feature: str = ""
-    scale: float = quantity("", gt=0, help="what an error is a share of")
+    scale: float = quantity("", gt=0, help="value that an error is a share of")
     exact: float | None = quantity("", None, help="exact value")
 
     @pydantic.model_validator(mode="after")

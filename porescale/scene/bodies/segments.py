@@ -20,7 +20,7 @@ Lines = tuple[tuple[float, float, float, float], ...]
 class Framed(Section):
     """What bodies of segments have in common.  The thickness is half of what a segment measures across."""
 
-    thickness: float = quantity("m", ge=0, le=1e3, help="how far its surface lies from its lines, on either side")
+    thickness: float = quantity("m", ge=0, le=1e3, help="distance of its surface from its lines, on either side")
     density: float | None = quantity("kg/m^3", None, ge=1e-3, le=1e5, help="density (default: of its material)")
     material: str = pydantic.Field("", description="name of its material (default: the first)")
     velocity: tuple[float, float] = quantity("m/s", (0.0, 0.0), **SPEED, help="velocity of the centre at the start")
@@ -116,7 +116,7 @@ class Container(Section):
 
     chain: Points = quantity("m", (), **PLACE, help="points from which to which its segments go")
     ends: Lines = quantity("m", (), **PLACE, help="ends of each segment, [x1, y1, x2, y2]")
-    thickness: float = quantity("m", ge=0, le=1e3, help="how far its surface lies from its lines, on either side")
+    thickness: float = quantity("m", ge=0, le=1e3, help="distance of its surface from its lines, on either side")
     material: str = pydantic.Field("", description="name of its material (default: that of the walls)")
     name: str = pydantic.Field("", description="name in the columns (default: container and its number)")
     pivot: tuple[float, float] | None = quantity("m", None, **PLACE, help="point that moves and about which it turns")
