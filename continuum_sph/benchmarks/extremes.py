@@ -36,7 +36,7 @@ def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict
     while model.time < end:
         model.advance(CHECKED)
         model.check()
-        fastest = max(fastest, model.flow.swiftest)
+        fastest = max(fastest, model.flow.max_speed)
         if way is None and model.time >= JUDGED:
             way = front(model)
     energy = budget(model.flow)["energy balance"] / start if start else 1.0

@@ -16,8 +16,8 @@ from porescale.common.schema.names import name_faults
 from porescale.common.schema.sections import Section, quantity
 
 
-class Body(Section):
-    """A piece of ground, given by its outline: corners (x, y), m, in order."""
+class Outline(Section):
+    """A closed polygon: corners (x, y), m, in order."""
 
     outline: tuple[tuple[float, float], ...] = quantity("m", ge=0, le=1e5, help="corners (x, y) of the outline")
 
@@ -56,7 +56,15 @@ class Body(Section):
         return inside
 
 
-class Watch(Body):
+class Body(Outline):
+    """A piece of ground, with a permeability of its own or that of the soil."""
+
+    permeability: float | None = quantity(
+        "m/s", None, ge=1e-12, le=10, help="k of this piece of ground, in place of soil.permeability"
+    )
+
+
+class Watch(Outline):
     """A part of the ground whose mean displacement is recorded: what lies within its outline at the start."""
 
     name: str = pydantic.Field("", description="name in the columns (default: its number)")
@@ -159,6 +167,20 @@ class SoilSection(Section):
         material = {"type": "string", "description": about}
         return {**schema, "properties": {**schema["properties"], "material": material}}
 
+    def permeability_at(self, points: Floats) -> Floats:
+        """k (n,) m/s of the ground at ``points`` (n, 2) m: of the last body that holds a point and has its own."""
+        k = np.full(len(points), self.permeability)
+        for body in self.body:
+            if body.permeability is not None:
+                k[body.holds(points)] = body.permeability
+        return k
+
+    @property
+    def permeabilities(self) -> tuple[float, float]:
+        """The least and the largest k of the bodies, m/s."""
+        found = [self.permeability if it.permeability is None else it.permeability for it in self.body]
+        return min(found), max(found)
+
     @property
     def height(self) -> float:
         """Height of the highest soil above the floor, m."""
@@ -167,7 +189,7 @@ class SoilSection(Section):
     def faults(self, width: float, height: float, slack: float) -> list[Fault]:
         """What is wrong with the ground in a tank of ``width`` by ``height``, m."""
         found = []
-        outlines: list[tuple[str, tuple[Body, ...]]] = [("body", self.body), ("watch", self.watch)]
+        outlines: list[tuple[str, tuple[Outline, ...]]] = [("body", self.body), ("watch", self.watch)]
         for key, body in ((f"soil.{kind}[{k}].outline", it) for kind, of in outlines for k, it in enumerate(of)):
             if len(body.outline) < 3:
                 found.append(Fault(key, len(body.outline), "corners hold nothing", "", ">= 3"))

@@ -30,6 +30,17 @@ what lies beside it: the discharge of a dam, right up to 21 s, is 2.6 % too larg
 runs off below, it would fall after that: a river that rises fast would be half as dense over a third of its depth, and
 stand up to a quarter higher than it weighs.
 
+What has passed on is a balance of the strip and the water before it: what was let in less what was let out, and less
+the change of
+
+    Σ w(x_i, y_i) m_i
+
+where w is 1 in the strip, with its ramp at the bottom, and falls as a cosine beyond each end that lies in the water: to
+0 halfway to the next strip, or over 3 spacings where there is none.  It is the mass that has passed a section, in the
+mean over all sections on the way, so it has no steps of whole particles, and hardly any of the drops in which water
+leaves ground.  The sum over all reservoirs is, to round-off, what the rest of the tank has gained: nothing where
+nothing changes any more.
+
 Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
 far from each other and from all else that they have no neighbours.  A row without mass is a waiting particle.
 """
@@ -131,8 +142,9 @@ class Reservoir:
 
     left, right, bottom : m;  times (k,) s and levels (k,) m : straight lines between them, constant before and after;
     walls : whether each end lies at a wall of the tank;  let_in, let_out : mass recorded so far, kg/m;  level : of the
-    last step, m;  stood : that of the first, m;  full : kg/m² of the strip to a metre of level;  porosity : of what
-    lies below the bottom at the start, 1 for open water;  strip : where it is weighed.
+    last step, m;  full : kg/m² of the strip to a metre of level;  porosity : of what lies below the bottom at the
+    start, 1 for open water;  strip : where it is weighed;  reach : the strip and the ways on which water counts in part
+    as passed on;  held : mass in the reach at the start, kg/m.
     """
 
     name: str
@@ -145,16 +157,17 @@ class Reservoir:
     let_in: float = 0.0
     let_out: float = 0.0
     level: float = 0.0
-    stood: float = field(default=float("nan"))
+    held: float = field(default=float("nan"))
     full: float = 0.0
     tops: Floats = field(default_factory=lambda: np.zeros(0))
     sinking: Floats = field(default_factory=lambda: np.zeros(0))
     ramps: tuple[float, float] = (0.0, 0.0)
     porosity: float = 1.0
     strip: Strip = field(init=False)
+    reach: Strip = field(init=False)
 
-    def fit(self, spacing: float, density: float) -> None:
-        """Columns and ramps for particles of a ``spacing``, m, and a ``density``, kg/m³."""
+    def fit(self, spacing: float, density: float, others: Sequence["Reservoir"] = ()) -> None:
+        """Columns, ramps and reach for particles of a ``spacing``, m, and a ``density``, kg/m³, beside ``others``."""
         breadth = self.right - self.left
         self.tops, self.sinking = np.zeros((2, max(1, round(breadth / spacing))))
         ramp = min(RAMP * spacing, 0.5 * breadth)
@@ -162,18 +175,18 @@ class Reservoir:
         self.full = density * self.width
         below = HALF * spacing / max(LEAST_POROSITY, self.porosity) ** 0.5 if self.bottom > 0.0 else 0.0
         self.strip = Strip(self.left, self.right, *self.ramps, self.bottom, below, HALF * spacing)
+        before = [HALF * (self.left - it.right) for it in others if it.left < self.left]
+        behind = [HALF * (it.left - self.right) for it in others if it.left > self.left]
+        ways = [max(0.0, min(gaps, default=RAMP * spacing)) for gaps in (before, behind)]
+        first, last = (0.0 if wall else way for wall, way in zip(self.walls, ways, strict=True))
+        self.reach = self.strip._replace(
+            left=self.left - first, right=self.right + last, ramp_left=first, ramp_right=last
+        )  # fmt: skip
 
     @property
     def width(self) -> float:
         """Effective width of the strip, ∫ w dx, m."""
         return self.right - self.left - 0.5 * sum(self.ramps)
-
-    @property
-    def passed(self) -> float:
-        """Mass that has gone from the strip into the rest of the tank since the start, kg/m: what was let in less what
-        was let out, and less what the strip holds more.  No steps of whole particles, but where one is put on a
-        ramp: then of its part there."""
-        return self.let_in - self.let_out + self.full * (self.stood - self.level)
 
     def wanted(self, time: float) -> float:
         """Level (m) at a ``time`` (s)."""
@@ -195,8 +208,8 @@ class Supply:
         self.layer, self.reservoirs, self.berth, self.spacing = layer, list(reservoirs), berth, spacing
         self.density, self.stiffness, self.gravity = density, stiffness, gravity
         self.whole = density * spacing * spacing  # kg/m, of a new particle
-        for reservoir in self.reservoirs:
-            reservoir.fit(spacing, density)
+        for it in self.reservoirs:
+            it.fit(spacing, density, [other for other in self.reservoirs if other is not it])
 
     def keep(self, time: float) -> None:
         """Bring every reservoir to its level of ``time`` (s), between drift and forces of a step.
@@ -205,10 +218,24 @@ class Supply:
         """
         layer = self.layer
         for reservoir in self.reservoirs:
+            if np.isnan(reservoir.held):
+                reservoir.held = self._within(reservoir)
             self._level(reservoir, time)
         park_waiting(
             layer.fluid, layer.x, layer.v, layer.mass, layer.density, layer.predicted, self.berth, self.density
         )  # fmt: skip
+
+    def _within(self, pool: Reservoir) -> float:
+        """Mass in the reach of ``pool``, kg/m."""
+        layer, unused = self.layer, np.zeros((2, 1))
+        return float(
+            measure_strip(layer.fluid, layer.x, layer.v, layer.mass, layer.material, pool.reach, 1.0, *unused)[0]
+        )
+
+    def passed(self, pool: Reservoir) -> float:
+        """Mass that has passed on from ``pool`` towards the next reservoir since the start, kg/m, below zero for what
+        has come from there: let in less let out, and less what its reach holds more."""
+        return pool.let_in - pool.let_out + pool.held - self._within(pool)
 
     def _level(self, pool: Reservoir, time: float) -> None:
         """Add or take particles until ``pool`` is within half a particle of its level."""
@@ -220,8 +247,6 @@ class Supply:
             )  # fmt: skip
             over = held - full * (target - pool.bottom)
             pool.level = pool.bottom + held / full
-            if np.isnan(pool.stood):
-                pool.stood = pool.level
             if highest >= 0 and (over > 0.5 * layer.mass[highest] or target <= pool.bottom):
                 pool.let_out += float(layer.mass[highest])
                 layer.mass[highest] = 0.0

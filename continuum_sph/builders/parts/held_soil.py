@@ -13,8 +13,8 @@ from porescale.common.record.part import Part
 
 def held_ground(scene: Scene) -> Frame:
     """The soil of a scene, held where it is."""
-    section = soil_section(scene)
-    return Frame(soil_particles(scene)[0], scene.numerics.spacing**2, section.porosity, section.permeability)
+    section, x = soil_section(scene), soil_particles(scene)[0]
+    return Frame(x, scene.numerics.spacing**2, section.porosity, section.permeability_at(x))
 
 
 class HeldSoilPart(Part):

@@ -95,9 +95,10 @@ def leave_to_water(scene: Scene, ground: SoilFlow, x: Floats, v: Floats, rho: Fl
     depth = np.max([body.top(x[:, 0]) for body in section.body], axis=0) - x[:, 1]
     inside = np.any([body.holds(x) for body in section.body], axis=0)
     borne = section.density * scene.gravity * depth - buoyancy(scene, x)
-    q = section.permeability * (section.density / scene.water.density - (1.0 - n)) * (scene.gravity / GRAVITY)
-    v[inside, 1] = q * (1.0 - n) / n
-    ground.soil.v[: ground.soil.soil, 1] = -q
+    gradient, soil = section.density / scene.water.density - (1.0 - n), slice(ground.soil.soil)
+    k, k_soil = section.permeability_at(x[inside]), section.permeability_at(ground.soil.x[soil])
+    v[inside, 1] = k * gradient * (scene.gravity / GRAVITY) * (1.0 - n) / n
+    ground.soil.v[soil, 1] = -(k_soil * gradient * (scene.gravity / GRAVITY))
     found: Floats = state.density_at(state.pressure(rho) + np.where(inside, np.maximum(borne, 0.0), 0.0))
     return found
 
@@ -140,7 +141,9 @@ def ground_of(scene: Scene, *, hasty: bool = False) -> tuple[SoilFlow | Frame, S
         return frame, frame.skeleton
     ground = soil_flow(scene, hasty=hasty)
     submerge(scene, ground)
-    return ground, skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
+    return ground, skeleton_of(
+        ground, section.density / (1.0 - section.porosity), section.permeability_at(ground.soil.x[: ground.soil.soil])
+    )
 
 
 def seepage_flow(scene: Scene, *, hasty: bool = False) -> Seepage:

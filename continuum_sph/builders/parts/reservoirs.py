@@ -43,15 +43,16 @@ class ReservoirPart(Part):
         NAME level (m) : height of the reservoir's water
         NAME let in (kg/m) : mass that it has let into the tank
         NAME let out (kg/m) : mass that it has taken out
-        NAME passed on (kg/m) : mass that has gone from it into the rest of the tank: let in less let out and less what
-            more it holds: smoother than these, which go in steps of whole particles
+        NAME passed on (kg/m) : mass that has gone from it towards the next reservoir, below zero for what has come
+            from there, in the mean over all sections between its strip and halfway: let in less let out, which go in
+            steps of whole particles, and less what more is held up to there
         """
         row = {}
         for it in self.supply.reservoirs:
             row[f"{it.name} level (m)"] = it.level
             row[f"{it.name} let in (kg/m)"] = it.let_in
             row[f"{it.name} let out (kg/m)"] = it.let_out
-            row[f"{it.name} passed on (kg/m)"] = it.passed
+            row[f"{it.name} passed on (kg/m)"] = self.supply.passed(it)
         return row
 
     def state(self) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from continuum_sph.builders.sanity import (
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.rate import RateSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.soil import Body, SoilSection
+from continuum_sph.scene.soil import Outline, SoilSection
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.soil import Material, Rate, Soil, SoilFlow, SoilLaw, porosity
@@ -342,7 +342,7 @@ def soil_law(scene: Scene) -> SoilLaw:
     )
 
 
-def unfilled(key: str, body: Body) -> Fault:
+def unfilled(key: str, body: Outline) -> Fault:
     """The fault of an outline, of a ``body`` at a ``key``, in which there is no particle of soil."""
     repair = "move or widen it, or lower numerics.spacing"
     return Fault(key, body.outline[0], "holds no particle of soil", "m", repair=repair)

@@ -109,13 +109,12 @@ def moist_soil(scene: Scene) -> MoistSoil:
     smoothing = ground.law.smoothing
     c = unity(smoothing.kind, smoothing.length / spacing)
     properties = properties_of(scene.water.density, scene.gravity, law, spacing, c, suction.connectivity)
-    area = np.full(soil.soil, spacing * spacing)
+    x, area = soil.x[: soil.soil], np.full(soil.soil, spacing * spacing)
     resistance = Resistance(section.porosity, section.permeability_law)
     water = Moisture(
-        law, properties, (1.0 - section.porosity) * area, np.full(soil.soil, section.permeability), section.porosity,
+        law, properties, (1.0 - section.porosity) * area, section.permeability_at(x), section.porosity,
         resistance if resistance.number else None,
     )  # fmt: skip
-    x = soil.x[: soil.soil]
     water.place(x, area)
     water.fill(initial_pressure(scene, x[:, 1]))
     pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)

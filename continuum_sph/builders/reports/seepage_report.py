@@ -56,7 +56,7 @@ def seepage_report(scene: Scene) -> Report:
     out.heading("soil and water")
     stiff = state.density * state.sound_speed**2
     step = min(step_limits(scene, law))  # of air beside water, too
-    drag = section.permeability / (section.porosity * GRAVITY)
+    drag = section.permeabilities[1] / (section.porosity * GRAVITY)
     out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
         step = min(step, moving(scene, out, stiff))
@@ -124,7 +124,7 @@ def moving(scene: Scene, out: Report, stiff: float) -> float:
     out.row("longest step for its sound", min(soil_law(scene).limits(0.0, sound / h, float("inf"))), "s")
     out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
     out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
-    spread = section.permeability * modulus / (density * GRAVITY)
+    spread = section.permeabilities[0] * modulus / (density * GRAVITY)
     out.row("consolidation coefficient", spread, "m2/s")
     out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
     step = float(SHARE * h / ((modulus + stiff / porosity) / whole) ** 0.5)
@@ -242,7 +242,7 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
         out.row(name, it.table[-1][1], "m", f"head in the end, from {start:g} to {end:g} m along the {it.side}")
     storage = section.porosity / (state.density * state.sound_speed**2)
     storage += 0.0 if section.held else 1.0 / largest_modulus(scene)
-    spread = section.permeability / (state.density * GRAVITY * storage)
+    spread = section.permeabilities[0] / (state.density * GRAVITY * storage)
     slow = STEADY_AFTER * (float(np.ptp(soil, axis=0).max()) + numerics.spacing) ** 2 / spread
     out.row("time until the flow is steady", slow, "s", "pressures have spread over the longer side of the ground")
     times, last = moments(scene), scene.time.end
@@ -250,7 +250,7 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
     steep = max((float(it.steep.max()) for it in flows), default=0.0)
     lifting = max((float(it.upward.max()) for it in flows), default=0.0)
     if steep > 0.0:
-        way = FARTHEST * numerics.spacing * section.porosity / (section.permeability * scene.gravity / GRAVITY)
+        way = FARTHEST * numerics.spacing * section.porosity / (section.permeabilities[1] * scene.gravity / GRAVITY)
         seconds = min(reached(times, it.steep, way) for it in flows)
         out.row("time in which water passes half a spacing", seconds, "s", "about; a run ends there")
         if last > seconds:

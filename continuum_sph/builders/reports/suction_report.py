@@ -22,12 +22,12 @@ def suction_report(scene: Scene) -> Report:
     """The soil's report, and how its water rises, sinks and limits steps; InputError for retention the water is too
     soft for."""
     section, suction, law = porous_section(scene), suction_section(scene), retention_of(scene)
-    numbers, porosity = law.numbers, section.porosity
+    numbers, porosity, (least, most) = law.numbers, section.porosity, section.permeabilities
     modulus, h = material_of(section).column_modulus, soil_law(scene).smoothing.length
     whole = section.density + numbers.residual * porosity * scene.water.density
     step = SHARE * h / ((modulus + law.stiffness / porosity) / whole) ** 0.5
     # the fastest wave that the lattice has: 8/spacing² of D = k K_w/(n rho g), about
-    longest = SAFE * porosity * law.weight * scene.numerics.spacing**2 / (4.0 * section.permeability * law.stiffness)
+    longest = SAFE * porosity * law.weight * scene.numerics.spacing**2 / (4.0 * most * law.stiffness)
     stages = max(1.0, 0.5 * (math.sqrt(1.0 + 8.0 * step / longest) - 1.0))
     out = soil_report(scene, step, HALVES * stages / STAGES)
     out.heading("suction")
@@ -35,8 +35,8 @@ def suction_report(scene: Scene) -> Report:
     out.row("capillary height", fringe, "m", "where S_e is a half, at rest over water")
     out.row("suction there", fringe * law.weight, "Pa")
     out.row("spacings in it", fringe / scene.numerics.spacing)
-    out.row("time to rise as high", porosity * fringe / section.permeability, "s", "about: n h/k")
-    out.row("time to sink through the soil", porosity * section.height / section.permeability, "s", "n H/k")
+    out.row("time to rise as high", porosity * fringe / least, "s", "about: n h/k")
+    out.row("time to sink through the soil", porosity * section.height / least, "s", "n H/k")
     out.row("cohesion of half full pores at most", HALF * fringe * law.weight * math.tan(section.friction_angle), "Pa",
             "S_e psi tan phi")  # fmt: skip
     ratio = law.stiffness / (porosity * modulus)

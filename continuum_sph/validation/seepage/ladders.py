@@ -1,9 +1,10 @@
-"""Convergence of water in soil: consolidation, sheet pile, imbibition, wet slopes at several spacings."""
+"""Convergence of water in soil: consolidation, sheet pile, imbibition, wet slopes, dam at several spacings."""
 
 from dataclasses import replace
 from functools import partial
 
 from continuum_sph.validation.seepage.consolidation import LAYER, consolidation
+from continuum_sph.validation.seepage.dam import CALM, DAM, unlike
 from continuum_sph.validation.seepage.infiltration import DRAWN, fronts
 from continuum_sph.validation.seepage.sheet_pile import SheetPile, flow
 from continuum_sph.validation.seepage.wet_slopes import SEEPING, STILL, WetSlope, friction
@@ -55,6 +56,21 @@ for which, (name, title, order) in enumerate((
 def front(rows: float) -> float:
     """Exact: Green & Ampt 1911 without capillarity and gravity."""
     return abs(fronts(replace(DRAWN, rows=int(rows)), (0.6,))[0] - 1.0)
+
+
+@LADDERS.ladder(
+    "seepage.in_and_out",
+    title="Largest difference of what passes into and out of a dam in 3.5 s, over what passes",
+    along="particles over the water before it",
+    levels=(12, 20, 32),
+    expected=2.0,
+    within=1.0,
+    because="water that leaves ground a particle at a time counts by a share of one too early or too late: of the"
+    " spacing squared, and of the spacing if as many as there are rows did so at once",
+)
+def between(rows: float) -> float:
+    """Exact: nothing where nothing changes any more."""
+    return unlike(replace(DAM, rows=int(rows), permeability=CALM))
 
 
 def slope_error(given: WetSlope, rows: float) -> float:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import continuum_sph
-from continuum_sph.benchmarks.extremes import EXTREMES
+from continuum_sph.benchmarks.extremes import EXTREMES, bubble, collapse, spun
+from continuum_sph.benchmarks.extremes_seepage import stirred
 from continuum_sph.builders.parts import soil
-from porescale.common.evidence.extremes import REFUSED, STOPPED
+from porescale.common.evidence.extremes import REFUSED, STOPPED, Verdict
 
 
 def found(axis, value):
@@ -32,6 +33,26 @@ def test_what_leaves_sense_is_stopped_and_named(value, named):
     row = found("leaving the domain", value)
     assert row.end == STOPPED
     assert named in row.said
+
+
+@pytest.mark.parametrize(
+    ("run", "said"),
+    [
+        (collapse(0.01, judged=False), "fastest"),
+        (bubble(1.0, 0.01), "energy balance"),
+        (stirred(1e-3, 0.002), "energy left"),
+    ],
+    ids=["collapse", "bubble", "stirred"],
+)
+def test_what_goes_well_says_how(run, said):
+    assert said in run()
+
+
+@pytest.mark.slow
+def test_what_is_judged_is_right():
+    """The front of a column let go is that of a twentieth of the Mach number, within half a spacing."""
+    assert isinstance(collapse(0.3)(), Verdict)
+    assert "least pressure" in spun("kept", 0.0)()
 
 
 def test_a_tank_far_wider_than_its_ground_has_no_lattice_of_its_width(monkeypatch):

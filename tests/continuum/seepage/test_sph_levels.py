@@ -137,8 +137,69 @@ def test_what_has_passed_on_has_no_steps_of_whole_particles():
     for count, i in enumerate(inside, 1):
         layer.mass[i] -= 4.0
         given.keep(0.0)
-        assert strip.passed == pytest.approx(4.0 * count, abs=ROUND * 1000 * count)
+        assert given.passed(strip) == pytest.approx(4.0 * count, abs=ROUND * 1000 * count)
     assert strip.let_in == pytest.approx(110.0)  # the twin that must fail: 112 have passed
+
+
+def test_the_ways_from_a_reservoir_end_halfway_to_the_next_or_after_three_spacings():
+    first, second, third = (
+        supply(
+            pool(0.4, left=0.0, right=0.5), pool(0.4, left=0.9, right=1.2, walls=(False, False)),
+            pool(0.4, left=1.2, right=1.6, walls=(False, False)),
+        ).reservoirs
+    )  # fmt: skip
+    for it, way in ((first, (0.0, 0.2)), (second, (0.2, 0.0)), (third, (0.0, 0.3))):
+        assert (it.reach.ramp_left, it.reach.ramp_right) == pytest.approx(way, abs=1e-15)
+        assert (it.reach.left, it.reach.right) == pytest.approx((it.left - way[0], it.right + way[1]))
+        assert it.reach[4:] == it.strip[4:]
+
+
+def test_a_particle_on_its_way_passes_from_one_reservoir_to_the_next_by_parts():
+    ends = [pool(0.4, left=0.0, right=0.4), pool(0.0, left=1.6, right=2.0, walls=(False, True))]
+    given = supply(*ends)
+    layer = given.layer
+    layer.mass[(layer.mass > 0.0) & (layer.x[:, 0] > 1.6)] = 0.0
+    given.keep(0.0)
+    held = [given.passed(it) for it in ends]
+    assert held == pytest.approx([0.0, 0.0], abs=1e-12)
+    (mover,) = np.flatnonzero((layer.mass > 0.0) & (np.hypot(layer.x[:, 0] - 0.35, layer.x[:, 1] - 0.05) < 1e-9))
+    mass, places, seen = layer.mass[mover], np.linspace(0.35, 1.61, 127), []
+    for place in places:
+        layer.x[mover, 0] = place
+        if place > 1.6:
+            given._level(ends[1], 0.0)
+        seen.append([given.passed(it) for it in ends])
+    into, out = np.array(seen).T
+    # a cosine over 0.6 m on each side of the middle; what is drained takes no step, as it has counted as out
+    part = 0.5 - 0.5 * np.cos(np.pi * np.clip((places - 0.4) / 0.6, 0.0, 1.0))
+    np.testing.assert_allclose(into, mass * part, atol=1e-11)
+    part = 0.5 - 0.5 * np.cos(np.pi * np.clip((places - 1.0) / 0.6, 0.0, 1.0))
+    np.testing.assert_allclose(out, -mass * part, atol=1e-11)
+    assert ends[1].let_out == mass  # the twin that must fail: at once
+    assert np.abs(np.diff(out)).max() < 0.5 * np.pi / 0.6 * (places[1] - places[0]) * mass * 1.001
+
+
+def test_what_two_reservoirs_pass_on_is_what_is_between_them():
+    ends = [pool(0.4, left=0.0, right=0.4), pool(0.3, left=1.6, right=2.0, walls=(False, True))]
+    given = supply(*ends)
+    layer, rng = given.layer, np.random.default_rng(4)
+
+    def between():
+        there = layer.mass > 0.0
+        share = np.clip((layer.x[there, 0] - 0.4) / 0.6, 0.0, 2.0)
+        return layer.mass[there] @ (0.5 - 0.5 * np.cos(np.pi * share))
+
+    given.keep(0.0)
+    before, start = between(), sum(given.passed(it) for it in ends)
+    changes = []
+    for time in range(1, 20):
+        there = layer.mass > 0.0
+        layer.x[there] = np.clip(layer.x[there] + rng.normal(0.0, 0.05, (there.sum(), 2)), 1e-9, (2.0 - 1e-9, 4.0))
+        given.keep(float(time))
+        passed = sum(given.passed(it) for it in ends) - start
+        changes.append(between() - before)
+        assert passed == pytest.approx(changes[-1], abs=ROUND * layer.fluid * 1000.0)
+    assert np.ptp(changes) > 5.0  # of a particle of 10 kg/m, many times the rounding
 
 
 def test_air_in_a_strip_is_no_water():

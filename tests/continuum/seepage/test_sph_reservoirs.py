@@ -55,7 +55,8 @@ def off_in_the_open():
             reservoir=[{"name": "pool", "left": 0.0, "right": 0.2, "bottom": 0.16, "level": 0.24}],
         )
     )
-    return (model.flow.supply.reservoirs[0].stood - 0.24) / 0.02
+    pool = model.flow.supply.reservoirs[0]
+    return (pool.level - 0.24 - (pool.let_in - pool.let_out) / pool.full) / 0.02
 
 
 def test_a_reservoir_that_begins_in_open_water_has_its_level(monkeypatch):
