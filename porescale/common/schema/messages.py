@@ -3,7 +3,7 @@
 import difflib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -85,7 +85,9 @@ def _fault(
         return Fault(dotted(key[:-1]), None, f"entry [{key[-1]}] is missing", unit, allowed)
     if kind == "missing":
         a_section = field is not None and any(True for _ in sections_in(field.annotation))
-        repair = f"add [{name}]" if a_section else f"add {key[-1]} = …"
+        several = field is not None and get_origin(field.annotation) in (tuple, list)
+        header = f"[[{name}]]" if several else f"[{name}]"
+        repair = f"add {header}" if a_section else f"add {key[-1]} = …"
         return Fault(name, None, "is missing", unit, allowed, f"{repair} ({help})" if help else repair)
     if kind == "extra_forbidden":
         what = "section" if isinstance(value, dict | list) else "key"

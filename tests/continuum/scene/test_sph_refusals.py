@@ -168,3 +168,25 @@ def test_a_reservoir_without_soil_is_refused_in_one_line_and_beside_soil_it_fill
     row = filled.series()
     # Three columns of particles, 2.5 kg/m each, and the level is known to a row: three of four rows at least.
     assert row["mass (kg/m)"] == row["river let in (kg/m)"] - row["river let out (kg/m)"] >= 3 * 3 * 2.5
+
+
+@pytest.mark.parametrize(
+    ("section", "line"),
+    [
+        ({"soil": {}}, "soil.body: is missing; add [[soil.body]] (pieces of ground)"),
+        ({"inclusion": {}}, "inclusion.disc: is missing; add [[inclusion.disc]] (discs of the second fluid)"),
+        ({"tank": None}, "tank: is missing; add [tank]"),
+    ],
+)
+def test_a_list_of_tables_that_is_missing_is_asked_for_as_one(section, line):
+    """With [soil.body] the next run was refused again."""
+    table = {
+        "tank": {"width": 1.0, "height": 0.5},
+        "water": WATER,
+        "numerics": {"spacing": 0.05},
+        "time": {"end": 0.1},
+        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
+    }
+    with pytest.raises(InputError) as refused:
+        validate(Scene, {name: it for name, it in (table | section).items() if it is not None})
+    assert [fault.line() for fault in refused.value.faults] == [line]
