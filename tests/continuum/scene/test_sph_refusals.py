@@ -190,3 +190,14 @@ def test_a_list_of_tables_that_is_missing_is_asked_for_as_one(section, line):
     with pytest.raises(InputError) as refused:
         validate(Scene, {name: it for name, it in (table | section).items() if it is not None})
     assert [fault.line() for fault in refused.value.faults] == [line]
+
+
+def test_a_wrong_entry_of_a_list_is_the_only_fault():
+    """The list was called too short as well, by words of pydantic."""
+    with pytest.raises(InputError) as refused:
+        scene(soil={"body": [{"outline": BLOCK, "permeability": 0.0}]})
+    assert [fault.key for fault in refused.value.faults] == ["soil.body[0].permeability"]
+    with pytest.raises(InputError) as refused:
+        scene(soil={"body": []})
+    line = "soil.body: holds 0 of the 1 that it needs; add [[soil.body]] (pieces of ground)"
+    assert [fault.line() for fault in refused.value.faults] == [line]
