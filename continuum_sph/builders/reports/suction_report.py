@@ -46,7 +46,7 @@ def suction_report(scene: Scene) -> Report:
     out.row("stages of flow in a step", stages, "", f"of full pores; more than {MOST_STAGES} are several")
     if ratio < STIFF:
         speed = (STIFF * porosity * modulus / scene.water.density) ** 0.5
-        out.warn(f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.2g} "
+        out.warn(f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.0f} "
                  f"%; raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness")  # fmt: skip
     if fringe < 2.0 * scene.numerics.spacing:
         out.warn(f"the capillary height is {fringe / scene.numerics.spacing:.2g} spacings: lower numerics.spacing")

@@ -201,3 +201,16 @@ def test_a_wrong_entry_of_a_list_is_the_only_fault():
         scene(soil={"body": []})
     line = "soil.body: holds 0 of the 1 that it needs; add [[soil.body]] (pieces of ground)"
     assert [fault.line() for fault in refused.value.faults] == [line]
+
+
+def test_shares_in_warnings_are_written_out():
+    """They were "late by 1e+02 %" and "strains it by 2.1e+02 %"."""
+    soft = {"stiffness": 4e3}
+    told = report(scene(soil=soft)).warnings
+    assert any("strains it by 116 %: raise soil.stiffness" in it for it in told)
+    stiff = {"stiffness": 1e11}
+    for kind in (
+        {"water": WATER, "soil": stiff},
+        {"water": {"sound_speed": 30.0}, "soil": stiff | {"suction": SUCTION}},
+    ):
+        assert any("late by 100 %" in it for it in report(scene(**kind)).warnings)
