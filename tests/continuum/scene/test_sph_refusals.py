@@ -214,3 +214,10 @@ def test_shares_in_warnings_are_written_out():
         {"water": {"sound_speed": 30.0}, "soil": stiff | {"suction": SUCTION}},
     ):
         assert any("late by 100 %" in it for it in report(scene(**kind)).warnings)
+
+
+@pytest.mark.filterwarnings("error")
+def test_soil_without_stress_loses_none_in_a_centrifuge():
+    """Its buoyancy was divided by next to nothing, and numpy told of an overflow."""
+    wet = {"saturated": True, "stress": "none"}
+    build(scene(soil=wet, gravity=1e6, water={"density": 1e5, "sound_speed": 1e4}))
