@@ -12,7 +12,9 @@ METHODS = {"with repulsion": 10.0, "without": 0.0}
 
 def main() -> int:
     """Spin, compare with expected.toml, draw."""
-    words = options(__doc__ or "", HERE, rows=(int, 30, "particles over the length", 1), turns=(float, 1.5, "turns"))
+    words = options(
+        __doc__ or "", HERE, rows=(int, 30, "particles over the length", 2), turns=(float, 1.5, "turns", 1e-3)
+    )
     figure, axes = stage(len(METHODS), 9.0, 4.0)
     numbers = {}
     for panel, (name, strength) in zip(axes, METHODS.items(), strict=True):

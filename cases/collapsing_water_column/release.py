@@ -56,6 +56,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--across", type=int, default=20, help="particles over the width (default: 20)")
     across = parser.parse_args().across
+    if across < 4:
+        parser.error(f"--across = {across}: is out of range (allowed: 4 or more)")
     for clears, pressure in ((0.0, "released"), (0.0, "hydrostatic"), *((t, "hydrostatic") for t in (0.5, 1.0, 2.0))):
         moved = front(across, clears, pressure)
         print(f"gate gone at t √(2g/a) = {clears:g}, {pressure} at the start:")

@@ -65,7 +65,13 @@ def main() -> int:
     """A line for each second."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="of the run")
-    run, due = ps.open_run(parser.parse_args().folder), 0.0
+    folder, due = parser.parse_args().folder, 0.0
+    try:
+        run = ps.open_run(folder)
+    except ps.PorescaleError as error:
+        parser.error(str(error))
+    if not any(it["rise"] for it in run.card["scene"].get("reservoir", ())[:1]):
+        parser.error(f"folder = {str(folder)!r}: is no run of dry_levee")
     print("| s | river side | land side |\n|---|---|---|")
     for snapshot in run.snapshots():
         if snapshot.time > due - 1e-3:

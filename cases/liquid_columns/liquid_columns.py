@@ -63,7 +63,7 @@ def unevenness(model: Simulation) -> float:
 
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
-    given = options(__doc__ or "", HERE, across=(int, 10, "particles across the width of a column", 1))
+    given = options(__doc__ or "", HERE, across=(int, 10, "particles across the width of a column", 4))
     models = {name: column(viscosity, given.across, SETTLED) for name, viscosity in VISCOSITIES.items()}
     seen: dict[str, Any] = {}
     figure, axes = stage(len(SHOWN), 11.0, 3.6)

@@ -15,7 +15,7 @@ AMPLITUDE = 0.05  # of R
 
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
-    given = options(__doc__ or "", HERE, across=(int, 64, "particles across the box of 1 m", 1))
+    given = options(__doc__ or "", HERE, across=(int, 64, "particles across the box of 1 m", 7))
     flow, radius = fluids.kicked(given.across, RADIUS, AMPLITUDE)
     exact = fluids.exact_period(radius)
     t, s = fluids.swing(flow, 1.4 * exact)

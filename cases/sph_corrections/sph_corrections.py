@@ -84,7 +84,7 @@ def measure(across: int = 30) -> dict[str, list[float]]:
 
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
-    given = options(__doc__ or "", HERE, across=(int, 30, "particles in a period of the vortices", 1))
+    given = options(__doc__ or "", HERE, across=(int, 30, "particles in a period of the vortices", 7))
     found = measure(given.across)
     figure, axes = stage(4, 10.0, 3.2)
     titles = ("vortices", "flow between plates", "pressure at rest", "speed at rest / c0")

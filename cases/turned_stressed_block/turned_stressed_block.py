@@ -22,7 +22,7 @@ METHODS: dict[str, dict[str, bool]] = {
 
 def main() -> int:
     """Turn it, compare with expected.toml, draw."""
-    words = options(__doc__ or "", HERE, steps=(int, 2000, "steps of the turn", 1))
+    words = options(__doc__ or "", HERE, steps=(int, 2000, "steps of the turn", 2))
     x = square_lattice((-0.5, -0.25), (0.5, 0.25), SPACING)
     figure, (left, right) = stage(2, 10.0, 4.0)
     numbers = {}

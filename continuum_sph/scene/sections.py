@@ -203,9 +203,10 @@ class Scene(SceneBase):
         if soil.held and self.dry and soil.suction is None:
             faults.append(Fault("soil.held", True, "is of soil with water, of which there is none",
                                 repair="add [[water.column]], [[reservoir]] or [[face]]"))  # fmt: skip
-        for key, there in (("held", soil.held), ("water_table", soil.water_table)):
-            if soil.suction is not None and there not in (None, False):
-                faults.append(Fault(f"soil.{key}", there, "cannot be with soil.suction", repair="take out one of them"))
+        for key, there, unit in (("held", soil.held, ""), ("water_table", soil.water_table, "m")):
+            if soil.suction is not None and there is not None and there is not False:
+                faults.append(Fault(f"soil.{key}", there, "cannot be with soil.suction", unit,
+                                    repair="take out one of them"))  # fmt: skip
         if self.face and soil.suction is not None:
             faults.append(Fault("face", "given", "cannot be with soil.suction", repair="take out one of them"))
         for key, there in (("soil.saturated", soil.saturated), ("air", self.air is not None)):

@@ -5,6 +5,7 @@ A row of expected.toml holds name, value, tolerance, unit and because; the scrip
 
 import argparse
 import io
+import math
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -42,7 +43,7 @@ Option = tuple[type, Any, str] | tuple[type, Any, str, float]
 def options(description: str, folder: Path, **more: Option) -> argparse.Namespace:
     """The options of a script in ``folder``: --out, and those in ``more``; of type bool is a flag.
 
-    Ends the program with exit code 2 at what is no option, and at a number below its least.
+    Ends the program with exit code 2 at what is no option, at a number below its least, and at one that is not finite.
     """
     parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     default = Path("runs") / folder.name
@@ -53,9 +54,12 @@ def options(description: str, folder: Path, **more: Option) -> argparse.Namespac
         else:
             parser.add_argument(f"--{name}", type=kind, default=value, help=f"{text} (default: {value})")
     asked = parser.parse_args()
-    for name, (_, _, _, *least) in more.items():
-        if least and getattr(asked, name) < least[0]:
-            parser.error(f"--{name} = {getattr(asked, name)}: is out of range (allowed: {least[0]:g} or more)")
+    for name, (kind, _, _, *least) in more.items():
+        given = getattr(asked, name)
+        if kind is float and not math.isfinite(given):
+            parser.error(f"--{name} = {given}: is not finite")
+        if least and given < least[0]:
+            parser.error(f"--{name} = {given}: is out of range (allowed: {least[0]:g} or more)")
     return asked
 
 

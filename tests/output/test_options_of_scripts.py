@@ -1,11 +1,13 @@
 """Options of scripts of cases: a number below its least, as of a mean of none, is refused before anything is done."""
 
+import runpy
 import sys
 from pathlib import Path
 
 import pytest
 
 from porescale.output.case import options
+from tests.reference.folders import ROOT
 
 
 def asked(monkeypatch, packings):
@@ -39,3 +41,36 @@ def test_any_option_with_a_least_has_it_and_no_other(monkeypatch, capsys):
         assert f"{words[0]} = {words[1]}: is out of range (allowed: " in capsys.readouterr().err
     monkeypatch.setattr(sys, "argv", ["script", "--packings", "-1"])
     assert options("A script.", Path("case"), packings=(int, 4, "one without a least")).packings == -1
+
+
+@pytest.mark.parametrize("given", ["nan", "inf", "-inf"])
+def test_a_number_that_is_not_finite_is_refused(monkeypatch, capsys, given):
+    """nan is not below a least, and an end at inf is never reached."""
+    monkeypatch.setattr(sys, "argv", ["script", f"--end={given}"])
+    with pytest.raises(SystemExit) as caught:
+        options("A script.", Path("case"), end=(float, 1.0, "s", 0.5))
+    assert caught.value.code == 2
+    assert f"--end = {given}: is not finite" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("script", "words", "said"),
+    [
+        ("clay_bar/clay_bar", ["--rows", "1"], "2 or more"),  # no row between its ends: the largest of nothing
+        ("clay_bar/clay_bar", ["--turns", "0"], "0.001 or more"),  # a mean over no time
+        ("turned_stressed_block/turned_stressed_block", ["--steps", "1"], "2 or more"),  # nan
+        ("liquid_columns/liquid_columns", ["--across", "3"], "4 or more"),  # what a scene asks for at least
+        ("oscillating_drop/oscillating_drop", ["--across", "6"], "7 or more"),  # two cutoffs in a period
+        ("sph_corrections/sph_corrections", ["--across", "6"], "7 or more"),  # likewise
+        ("collapsing_water_column/release", ["--across", "3"], "4 or more"),
+        ("dry_levee/safety", ["nowhere"], "no run here"),
+    ],
+)
+def test_scripts_of_the_continuum_refuse_what_they_cannot_run(monkeypatch, capsys, tmp_path, script, words, said):
+    """Each ended in a traceback, or in numbers that are none."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["script", *words])
+    with pytest.raises(SystemExit) as caught:
+        runpy.run_path(str(ROOT / "cases" / f"{script}.py"), run_name="__main__")
+    assert caught.value.code == 2
+    assert said in capsys.readouterr().err.splitlines()[-1]

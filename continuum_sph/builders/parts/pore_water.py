@@ -79,8 +79,9 @@ def buoyancy(scene: Scene, x: Floats) -> Floats:
 def submerge(scene: Scene, ground: SoilFlow) -> None:
     """Take the buoyancy of the grains off the stress of soil that is at rest under its dry weight."""
     soil, n = ground.soil, ground.soil.soil
-    upright = np.maximum(soil.stress[:n, 1], 1e-300)
-    soil.stress[:n] *= (1.0 - np.minimum(1.0, buoyancy(scene, soil.x[:n]) / upright))[:, None]
+    upright, lost = soil.stress[:n, 1], buoyancy(scene, soil.x[:n])
+    share = np.divide(lost, upright, out=np.ones(n), where=lost < upright)
+    soil.stress[:n] *= (1.0 - share)[:, None]
 
 
 def leave_to_water(scene: Scene, ground: SoilFlow, x: Floats, v: Floats, rho: Floats) -> Floats:

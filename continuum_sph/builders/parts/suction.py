@@ -24,6 +24,7 @@ from continuum_sph.unsaturated.richards import (
     properties_of,
     unity,
 )
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import square_lattice
 from porescale.common.record.model import Cloud, Snapshot
@@ -60,6 +61,21 @@ def initial_pressure(scene: Scene, y: Floats) -> Floats:
     assert section.saturation is not None
     part = (section.saturation - section.residual) / (1.0 - section.residual)
     return np.full(len(y), -law.weight * float(law.suction(part)))
+
+
+def require_filled(scene: Scene, y: Floats) -> None:
+    """Refuse suction at the start that leaves pores at heights ``y`` (n,) m less than no water: beyond the dry end of
+    the retention curve a filling falls with the stiffness of the water, and without an end."""
+    section, law = suction_section(scene), retention_of(scene)
+    if float(law.filling(initial_pressure(scene, y)).min()) >= 0.0:
+        return
+    key, problem, repair = "soil.suction", "leaves pores less than no water", "raise it or water.sound_speed"
+    if section.water_table is not None:
+        numbers = law.numbers
+        deepest = numbers.dry_pressure - numbers.stiffness * numbers.dry  # at which a filling is 0
+        least = float(y.max()) + deepest / law.weight
+        raise InputError(Fault(f"{key}.water_table", section.water_table, problem, "m", f">= {least:.4g}", repair))
+    raise InputError(Fault(f"{key}.saturation", section.saturation, problem, repair=repair))
 
 
 def outside_of(scene: Scene, ground: SoilFlow) -> Outside:
@@ -116,6 +132,7 @@ def moist_soil(scene: Scene) -> MoistSoil:
         resistance if resistance.number else None,
     )  # fmt: skip
     water.place(x, area)
+    require_filled(scene, x[:, 1])
     water.fill(initial_pressure(scene, x[:, 1]))
     pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
     modulus = material.column_modulus * material.stiffness_at(pressure) / material.stiffness

@@ -132,7 +132,7 @@ def moving(scene: Scene, out: Report, stiff: float) -> float:
     if ratio < STIFF:
         speed = (STIFF * porosity * modulus / density) ** 0.5
         out.warn(
-            f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.2g} %; "
+            f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.0f} %; "
             f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
         )
     return step

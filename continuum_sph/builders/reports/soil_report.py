@@ -65,7 +65,7 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
     report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
     if strain > 10.0 * SOFTEST:
-        out.warn(f"the soil's weight strains it by {100.0 * strain:.2g} %: raise soil.stiffness")
+        out.warn(f"the soil's weight strains it by {100.0 * strain:.3g} %: raise soil.stiffness")
     return out
 
 

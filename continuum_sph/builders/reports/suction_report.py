@@ -2,8 +2,8 @@
 
 import math
 
-from continuum_sph.builders.parts.soil import material_of, porous_section, soil_law
-from continuum_sph.builders.parts.suction import retention_of, suction_section
+from continuum_sph.builders.parts.soil import material_of, porous_section, soil_law, soil_particles
+from continuum_sph.builders.parts.suction import require_filled, retention_of, suction_section
 from continuum_sph.builders.reports.seepage_report import STIFF
 from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
@@ -19,9 +19,10 @@ STAGES = 2.4e6  # particle-stages of the flow a second and thread, measured like
 
 
 def suction_report(scene: Scene) -> Report:
-    """The soil's report, and how its water rises, sinks and limits steps; InputError for retention the water is too
-    soft for."""
+    """The soil's report, and how its water rises, sinks and limits steps; InputError for retention that the water is
+    too soft for, or of which suction at the start leaves nothing."""
     section, suction, law = porous_section(scene), suction_section(scene), retention_of(scene)
+    require_filled(scene, soil_particles(scene)[0][:, 1])
     numbers, porosity, (least, most) = law.numbers, section.porosity, section.permeabilities
     modulus, h = material_of(section).column_modulus, soil_law(scene).smoothing.length
     whole = section.density + numbers.residual * porosity * scene.water.density
@@ -45,7 +46,7 @@ def suction_report(scene: Scene) -> Report:
     out.row("stages of flow in a step", stages, "", f"of full pores; more than {MOST_STAGES} are several")
     if ratio < STIFF:
         speed = (STIFF * porosity * modulus / scene.water.density) ** 0.5
-        out.warn(f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.2g} "
+        out.warn(f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.0f} "
                  f"%; raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness")  # fmt: skip
     if fringe < 2.0 * scene.numerics.spacing:
         out.warn(f"the capillary height is {fringe / scene.numerics.spacing:.2g} spacings: lower numerics.spacing")

@@ -17,6 +17,8 @@ Settings = Annotated[
     list[str] | None, Parameter(name="--set", help="section.key=value, over the scene and its quality; repeatable")
 ]
 Threads = Annotated[int | None, Parameter(help="threads of the kernels; all cores if not given")]
+ThreadsOfEach = Annotated[int | None, Parameter(help="threads of the kernels")]
+"""Of what runs on one thread if not told otherwise."""
 Json = Annotated[bool, Parameter(name="--json", help="print JSON instead of tables")]
 List = Annotated[bool, Parameter(name="--list", help="only say which there are")]
 

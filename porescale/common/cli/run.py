@@ -33,7 +33,7 @@ def command(package: Package) -> Callable[..., int]:
         quality: Quality = None,
         settings: Settings = None,
         threads: Threads = None,
-        device: Annotated[Literal["cpu", "gpu"] | None, Parameter(help="run.device of the scene")] = None,
+        device: Annotated[Literal["cpu", "gpu"] | None, Parameter(help="run.device, of porescale alone")] = None,
         resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
         overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
         error: Annotated[
@@ -50,6 +50,7 @@ def command(package: Package) -> Callable[..., int]:
 
         place = require_scene(scene, package.name)
         if device is not None:
+            _require_device(package)
             settings = [*(settings or ()), f"run.device={device}"]
         chosen = None
         if error is not None or budget is not None:
@@ -87,6 +88,13 @@ def command(package: Package) -> Callable[..., int]:
 def _end(scene: Any) -> float:
     """Time that a scene is to simulate, s; 0 where it does not say so."""
     return float(getattr(getattr(scene, "time", None), "end", 0.0))
+
+
+def _require_device(package: Package) -> None:
+    """InputError where scenes of a package have no run.device."""
+    if "run" not in package.scene().model_fields:
+        raise InputError(Fault("--device", None, f"is of porescale: {package.name} runs on the CPU alone",
+                               repair="leave it out"))  # fmt: skip
 
 
 def _require_free_choice(quality: str | None, resume: bool) -> None:

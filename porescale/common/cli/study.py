@@ -11,7 +11,7 @@ from cyclopts import App, Parameter
 
 from porescale.common.cli import trade
 from porescale.common.cli.folders import output_folder
-from porescale.common.cli.options import Json, List, Scene, Threads, print_json, require_scene, say, use_threads
+from porescale.common.cli.options import Json, List, Scene, ThreadsOfEach, print_json, require_scene, say, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.trade import circumstances
 from porescale.common.core.errors import Fault, InputError
@@ -61,7 +61,7 @@ def _extremes(package: Package) -> Callable[..., int]:
         *names: Annotated[str, Parameter(help="what is varied; all if not given")],
         out: Annotated[str, Parameter(help="folder of extremes.json, .md and .png")] = "runs/extremes",
         list_: List = False,
-        threads: Threads = 1,
+        threads: ThreadsOfEach = 1,
         json: Json = False,
     ) -> int:
         """Try more and more extreme input: what is stable, what is refused before it starts, what is stopped, and
@@ -97,7 +97,7 @@ def _stability(package: Package) -> Callable[..., int]:
         out: Annotated[str, Parameter(help="folder of stability.json, .csv, .md and .png")] = "runs/stability",
         quick: Annotated[bool, Parameter(help="few laws at few values: seconds")] = False,
         list_: List = False,
-        threads: Threads = 1,
+        threads: ThreadsOfEach = 1,
         json: Json = False,
     ) -> int:
         """Map where each law stays stable and where it is right, over flows that go from mild to extreme.
@@ -146,7 +146,7 @@ def _convergence(package: Package) -> Callable[..., int]:
             "runs/convergence"
         ),
         list_: List = False,
-        threads: Threads = 1,
+        threads: ThreadsOfEach = 1,
         json: Json = False,
     ) -> int:
         """Run experiments with known answers at several resolutions: errors, and the order at which they fall.
@@ -191,7 +191,7 @@ def _endurance(package: Package) -> Callable[..., int]:
         out: Annotated[str, Parameter(help="folder of endurance.json, .md and .png")] = "runs/endurance",
         resume: Annotated[bool, Parameter(help="keep what has finished there, and go on with what has not")] = False,
         list_: List = False,
-        threads: Threads = 1,
+        threads: ThreadsOfEach = 1,
         json: Json = False,
     ) -> int:
         """Run small things for a million steps: what creeps of mass, momentum, places, memory; what is found wrong.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from porescale.common.cli.folders import output_folder
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
+from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.studies.sweep import check_points, columns_at_end, expected, run_points
@@ -55,7 +55,7 @@ def command(package: Package) -> Callable[..., int]:
         settings: Settings = None,
         out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _sweep if not given")] = None,
         jobs: Jobs = None,
-        threads: Threads = 1,
+        threads: ThreadsOfEach = 1,
         scheduler: Scheduler = None,
         again: Again = False,
     ) -> int:

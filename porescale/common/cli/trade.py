@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from porescale.common.cli.folders import output_folder
-from porescale.common.cli.options import Scene, Settings, Threads, require_scene, say, use_threads
+from porescale.common.cli.options import Scene, Settings, ThreadsOfEach, require_scene, say, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.sweep import (
     Again,
@@ -41,7 +41,7 @@ def command(package: Package) -> Callable[..., int]:
         settings: Settings = None,
         out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _trade if not given")] = None,
         jobs: Jobs = None,
-        threads: Threads = 1,
+        threads: ThreadsOfEach = 1,
         scheduler: Scheduler = None,
         again: Again = False,
     ) -> int:

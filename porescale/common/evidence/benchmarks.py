@@ -221,7 +221,7 @@ def table(rows: Sequence[Row]) -> Table:
 
     made = Table(box=None, pad_edge=False, header_style="bold")
     for heading in ("name", "size", "threads", "dtype", "rate", "", "s/call", "bytes", "of bandwidth", "on"):
-        made.add_column(heading)
+        made.add_column(heading, no_wrap=heading in ("name", "rate", ""))  # half a number is none
     for row in rows:
         share = None if row.share_of_bandwidth is None else f"{100 * row.share_of_bandwidth:.0f} %"
         numbers = f"{row.rate:.4g}", row.unit, f"{row.seconds:.3g}", row.bytes or None, share, row.device

@@ -150,7 +150,18 @@ def changed_keys(old: Any, new: Any, free: Collection[str] = FREE, place: str = 
             below = f"{place}.{key}" if place else str(key)
             found |= changed_keys(old.get(key), new.get(key), free, below)
         return found
+    if _tables(old) and _tables(new) and len(old) == len(new):
+        return {
+            key: both
+            for k, (was, now) in enumerate(zip(old, new, strict=True))
+            for key, both in changed_keys(was, now, free, f"{place}[{k}]").items()
+        }
     return {} if old == new else {place: (old, new)}
+
+
+def _tables(value: Any) -> bool:
+    """Whether a value is a list of tables."""
+    return isinstance(value, list) and bool(value) and all(isinstance(it, dict) for it in value)
 
 
 def changed_laws(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Fault]:
@@ -167,8 +178,11 @@ def changed_laws(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Fault]:
 
 def has_key(scene: Any, key: str) -> bool:
     """Whether a scene has a dotted key, whatever its value; "" is all of it."""
-    for part in key.split(".") if key else ():
-        if not (isinstance(scene, dict) and part in scene):
+    for part in key.replace("[", ".").replace("]", "").split(".") if key else ():
+        if isinstance(scene, list) and part.isdecimal() and int(part) < len(scene):
+            scene = scene[int(part)]
+        elif isinstance(scene, dict) and part in scene:
+            scene = scene[part]
+        else:
             return False
-        scene = scene[part]
     return True

@@ -248,9 +248,12 @@ def check_changes(folder: Path, given: dict[str, Any], today: Today | None = Non
     faults = []
     for key, (was, now) in cards.changed_keys(whole, new).items():
         problem, way = f"was {was!r}", f"resume with {was!r}, or "
+        if was is None:
+            problem, way = "was absent", "resume without it, or "
         if not cards.has_key(old, key):
             problem = "the run was begun by a version without it"
-            way = "" if whole is old else f"set it to {was!r} to go on as that did, or "
+            same = "leave it out" if was is None else f"set it to {was!r}"
+            way = "" if whole is old else f"{same} to go on as that did, or "
         value = now if now is not None else "absent"
         faults.append(Fault(key or "scene", value, problem, repair=f"{way}start another run"))
     faults += cards.changed_laws(cards.read_card(folder), cards.plain(given))

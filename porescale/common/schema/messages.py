@@ -3,7 +3,7 @@
 import difflib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -34,6 +34,7 @@ def nearest(name: str, known: Iterable[str], what: str = "keys") -> str:
 def translate(error: ValidationError, scene_type: type[BaseModel], data: Mapping[str, Any]) -> list[tuple[Key, Fault]]:
     """Every error of validating ``data`` as ``scene_type``: faults with their keys, in the fields' order."""
     found: list[tuple[Key, Fault]] = []
+    short: set[Key] = set()
     branches: dict[Key, int] = {}  # where the first branch of a union was reported
     for item in error.errors(include_url=False):
         key, owners, field, in_branch = _locate(item, scene_type, data)
@@ -51,7 +52,15 @@ def translate(error: ValidationError, scene_type: type[BaseModel], data: Mapping
         if in_branch:
             branches[key] = len(found)
         found.append((key, fault))
-    return found
+        if item["type"] == "too_short":
+            short.add(key)
+    # a list whose only entry is wrong is not short: its entry is told
+    return [it for it in found if it[0] not in short or not any(_below(key, it[0]) for key, _ in found)]
+
+
+def _below(key: Key, above: Key) -> bool:
+    """Whether a ``key`` lies within the section or list at ``above``."""
+    return len(key) > len(above) and key[: len(above)] == above
 
 
 LONGEST_INDEX = 9
@@ -85,8 +94,13 @@ def _fault(
         return Fault(dotted(key[:-1]), None, f"entry [{key[-1]}] is missing", unit, allowed)
     if kind == "missing":
         a_section = field is not None and any(True for _ in sections_in(field.annotation))
-        repair = f"add [{name}]" if a_section else f"add {key[-1]} = …"
+        several = field is not None and get_origin(field.annotation) in (tuple, list)
+        header = f"[[{name}]]" if several else f"[{name}]"
+        repair = f"add {header}" if a_section else f"add {key[-1]} = …"
         return Fault(name, None, "is missing", unit, allowed, f"{repair} ({help})" if help else repair)
+    if kind == "too_short" and field is not None and any(True for _ in sections_in(field.annotation)):
+        count, least = context["actual_length"], context["min_length"]
+        return Fault(name, None, f"holds {count} of the {least} that it needs", repair=f"add [[{name}]] ({help})")
     if kind == "extra_forbidden":
         what = "section" if isinstance(value, dict | list) else "key"
         return Fault(name, shown, f"unknown {what}", repair=_suggestion(str(key[-1]), owners, root))

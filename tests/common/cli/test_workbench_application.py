@@ -10,9 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from rich.console import Console
 
 from porescale.common.api.report import Report
 from porescale.common.cli.application import application, main
+from porescale.common.evidence.benchmarks import Row
+from porescale.common.evidence.benchmarks import table as rates_table
 from porescale.common.schema.sections import load
 from tests.reference.toy_package import TEMPLATE, TOY, ToyModel, ToyScene
 from tests.reference.waiting import done, running, talked
@@ -158,6 +161,24 @@ def test_help_and_version(toy) -> None:
     assert toy("run", "--help")[0] == 0
     assert toy("--version")[1] == "1.2.3\n"
     assert "--no-" not in toy("run", "--help")[1]
+
+
+def test_no_option_has_two_defaults_in_its_help(toy) -> None:
+    """Threads were those of all cores "if not given", and 1 by default."""
+    for command in (("run",), ("sweep",), ("verify",), ("bench",), ("study", "trade")):
+        shown = " ".join(toy(*command, "--help")[1].replace("│", "").split())
+        options = shown.split(" --")[1:]
+        assert options, command
+        twice = [it for it in options if "if not given" in it and "[default:" in it]
+        assert not twice, command
+
+
+def test_a_narrow_table_of_rates_keeps_its_numbers() -> None:
+    row = Row("corrected", 20000, 1, "float64", 6.634e6, "particles/s", 0.151, 0.0, None)
+    console = Console(width=80, file=io.StringIO())
+    console.print(rates_table([row]))
+    said = console.file.getvalue()
+    assert all(it in said for it in ("corrected", "6.634e+06", "particles/s"))
 
 
 def test_asking_for_help_imports_nothing_heavy() -> None:

@@ -12,6 +12,7 @@ import pytest
 from porescale.common.core import atomic
 from porescale.common.core.errors import InputError
 from porescale.common.record import card
+from porescale.common.record.record import check_changes
 from porescale.common.record.series import Series, read_series
 
 
@@ -142,3 +143,34 @@ def test_changed_keys_are_named_and_free_ones_are_not():
     expected = {"fluid.viscosity": (1.0, 1.5), "fluid.model": (None, "trt"), "time.step": (1, 2)}
     assert card.changed_keys(old, new) == expected
     assert "run.duration" in card.changed_keys(old, new, free=())
+
+
+def test_changed_keys_of_lists_of_tables_are_those_of_the_entry():
+    """All bodies were printed twice where one had another number."""
+    old, new = ([{"x": 1.0, "hue": 0.0}, {"x": 2.0, "hue": hue}] for hue in (None, 3.0))
+    assert card.changed_keys({"body": old}, {"body": new}) == {"body[1].hue": (None, 3.0)}
+    assert card.changed_keys({"body": old}, {"body": old[:1]}) == {"body": (old, old[:1])}
+    assert card.changed_keys({"body": [1, 2]}, {"body": [1, 3]}) == {"body": ([1, 2], [1, 3])}
+    assert card.has_key({"body": old}, "body[1].hue")
+    assert not card.has_key({"body": old}, "body[2].hue")
+    assert not card.has_key({"body": old}, "body[1].x.y")
+
+
+@pytest.mark.parametrize(
+    ("began", "line"),
+    [
+        ({"x": 1.0, "hue": None}, "body[0].hue = 2.0: was absent; resume without it, or start another run"),
+        (
+            {"x": 1.0},
+            "body[0].hue = 2.0: the run was begun by a version without it; leave it out to go on as that did, or start "
+            "another run",
+        ),
+    ],
+)
+def test_a_key_that_a_run_had_not_is_to_be_left_out(tmp_path, began, line):
+    """It was to be set to None, which no scene can say."""
+    card.write_card(tmp_path, {"format": 1, "package": "toy", "scene": {"body": [began]}})
+    given = {"package": "toy", "scene": {"body": [{"x": 1.0, "hue": 2.0}]}}
+    with pytest.raises(InputError) as refused:
+        check_changes(tmp_path, given, lambda old: {"body": [{"x": 1.0, "hue": None}]})
+    assert [fault.line() for fault in refused.value.faults] == [line]

@@ -168,3 +168,56 @@ def test_a_reservoir_without_soil_is_refused_in_one_line_and_beside_soil_it_fill
     row = filled.series()
     # Three columns of particles, 2.5 kg/m each, and the level is known to a row: three of four rows at least.
     assert row["mass (kg/m)"] == row["river let in (kg/m)"] - row["river let out (kg/m)"] >= 3 * 3 * 2.5
+
+
+@pytest.mark.parametrize(
+    ("section", "line"),
+    [
+        ({"soil": {}}, "soil.body: is missing; add [[soil.body]] (pieces of ground)"),
+        ({"inclusion": {}}, "inclusion.disc: is missing; add [[inclusion.disc]] (discs of the second fluid)"),
+        ({"tank": None}, "tank: is missing; add [tank]"),
+    ],
+)
+def test_a_list_of_tables_that_is_missing_is_asked_for_as_one(section, line):
+    """With [soil.body] the next run was refused again."""
+    table = {
+        "tank": {"width": 1.0, "height": 0.5},
+        "water": WATER,
+        "numerics": {"spacing": 0.05},
+        "time": {"end": 0.1},
+        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
+    }
+    with pytest.raises(InputError) as refused:
+        validate(Scene, {name: it for name, it in (table | section).items() if it is not None})
+    assert [fault.line() for fault in refused.value.faults] == [line]
+
+
+def test_a_wrong_entry_of_a_list_is_the_only_fault():
+    """The list was called too short as well, by words of pydantic."""
+    with pytest.raises(InputError) as refused:
+        scene(soil={"body": [{"outline": BLOCK, "permeability": 0.0}]})
+    assert [fault.key for fault in refused.value.faults] == ["soil.body[0].permeability"]
+    with pytest.raises(InputError) as refused:
+        scene(soil={"body": []})
+    line = "soil.body: holds 0 of the 1 that it needs; add [[soil.body]] (pieces of ground)"
+    assert [fault.line() for fault in refused.value.faults] == [line]
+
+
+def test_shares_in_warnings_are_written_out():
+    """They were "late by 1e+02 %" and "strains it by 2.1e+02 %"."""
+    soft = {"stiffness": 4e3}
+    told = report(scene(soil=soft)).warnings
+    assert any("strains it by 116 %: raise soil.stiffness" in it for it in told)
+    stiff = {"stiffness": 1e11}
+    for kind in (
+        {"water": WATER, "soil": stiff},
+        {"water": {"sound_speed": 30.0}, "soil": stiff | {"suction": SUCTION}},
+    ):
+        assert any("late by 100 %" in it for it in report(scene(**kind)).warnings)
+
+
+@pytest.mark.filterwarnings("error")
+def test_soil_without_stress_loses_none_in_a_centrifuge():
+    """Its buoyancy was divided by next to nothing, and numpy told of an overflow."""
+    wet = {"saturated": True, "stress": "none"}
+    build(scene(soil=wet, gravity=1e6, water={"density": 1e5, "sound_speed": 1e4}))

@@ -70,6 +70,13 @@ def test_soil_that_is_held_is_not_sent_for_water_that_suction_refuses():
     assert [fault.problem for fault in refused.value.faults] == ["cannot be with soil.suction"]
 
 
+@pytest.mark.parametrize("height", [0.0, 0.1])
+def test_a_water_table_of_the_soil_is_refused_beside_suction(height):
+    """0 m passed, as it equals False, and did nothing."""
+    with pytest.raises(InputError, match=rf"soil\.water_table = {height} m: cannot be with soil\.suction"):
+        scene(soil={"water_table": height})
+
+
 @pytest.mark.parametrize("look", [report, Simulation])
 @pytest.mark.parametrize("porosity", [0.0, 0.04])
 def test_pores_without_room_for_water_are_refused(look, porosity):
@@ -77,6 +84,21 @@ def test_pores_without_room_for_water_are_refused(look, porosity):
     with pytest.raises(InputError, match=r"soil\.porosity = .*: leaves water no room \(allowed: >= 0\.05 with water\)"):
         look(scene(soil={"porosity": porosity}))
     look(scene(soil={"porosity": 0.05}))
+
+
+@pytest.mark.parametrize("look", [report, Simulation])
+def test_suction_that_leaves_pores_less_than_no_water_is_refused(look):
+    """`check` passed it, and the first look of the run found a negative filling, or the bound of its step a root of a
+    negative density."""
+    dry = {"water": {"sound_speed": 20.0}}
+    few = "leaves pores less than no water"
+    with pytest.raises(InputError, match=rf"suction\.water_table = -100\.0 m: {few}") as refused:
+        look(scene(SUCTION | {"water_table": -100.0}, **dry))
+    allowed = float(refused.value.faults[0].allowed.removeprefix(">= "))
+    look(scene(SUCTION | {"water_table": allowed + 0.1}, **dry))
+    little = SUCTION | {"water_table": None, "residual": 0.0, "saturation": 1e-9}
+    with pytest.raises(InputError, match=rf"suction\.saturation = 1e-09: {few}"):
+        look(scene(little, **dry))
 
 
 def test_check_says_of_which_gravity_permeability_is_with_suction():

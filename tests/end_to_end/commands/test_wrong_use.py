@@ -56,6 +56,7 @@ WRONG: dict[tuple[str, ...], str] = {
     ("porescale", "check", "good.toml", "--quality", "Draft"): 'Did you mean "draft"?',
     ("porescale", "run", "good.toml", "--speed", "3"): "--speed",
     # options that contradict, or ask for what is not there
+    ("continuum", "run", "soil.toml", "--device", "gpu"): "--device: is of porescale: continuum-sph runs on the CPU",
     ("porescale", "run", "good.toml", "--resume", "--overwrite"): "contradicts --overwrite",
     ("porescale", "run", CASE, "--error", "5%", "--quality", "fine"): "contradicts --error",
     ("porescale", "run", CASE, "--error", "1e-9%"): "is below the best point measured",
