@@ -152,24 +152,27 @@ def with_material(table: Any, folder: Path | None) -> Any:
     origin["intervals"] = {key: half for key, it in file.measured.items() if (half := it.half()) is not None}
     if file.pores is not None:
         origin["intrinsic_permeability"] = file.pores.permeability
-        taken["permeability"] = speed(file.pores.permeability, table.get("water"))
+        taken["permeability"] = speed(file.pores.permeability, table)
     own = {key: value for key, value in soil.items() if key != "material"}
     if file.rate is not None and isinstance(own.get("rate"), Mapping):  # only a scene that has the table takes it over
         own["rate"] = {**file.rate.model_dump(), **own["rate"]}
     return {**table, "soil": {**taken, **own, "origin": origin}}
 
 
-def speed(intrinsic: float, water: Any) -> float:
-    """k (m/s) of K (m²) for the water of the table [water], which others judge."""
-    given = water if isinstance(water, Mapping) else {}
+def speed(intrinsic: float, table: Mapping[str, Any]) -> float:
+    """k (m/s) of K (m²) for the water of a scene's ``table``, whose numbers others judge: under 9.81 m/s², or under the
+    gravity of the scene where the soil has suction, as `soil.permeability` counts."""
+    water = table.get("water")
 
-    def number(key: str, unit: str, usual: float) -> float:
-        """A quantity of the water in ``unit``, ``usual`` where it is not given or not valid."""
+    def number(given: Any, key: str, unit: str, usual: float) -> float:
+        """A quantity of a table in ``unit``, ``usual`` where it is not given or not valid."""
         try:
-            found = to_si(given.get(key, usual), unit)
+            found = to_si(given.get(key, usual) if isinstance(given, Mapping) else usual, unit)
         except (TypeError, ValueError):
             return usual
         return found if found > 0.0 else usual
 
-    density, viscosity = number("density", "kg/m^3", DENSITY), number("viscosity", "Pa s", VISCOSITY)
-    return intrinsic * density * GRAVITY / viscosity
+    density, viscosity = number(water, "density", "kg/m^3", DENSITY), number(water, "viscosity", "Pa s", VISCOSITY)
+    suction = isinstance(table["soil"].get("suction"), Mapping)
+    gravity = number(table, "gravity", "m/s^2", GRAVITY) if suction else GRAVITY
+    return intrinsic * density * gravity / viscosity

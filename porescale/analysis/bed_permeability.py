@@ -11,6 +11,7 @@ from porescale.builders.derive import fluid_scales
 from porescale.builders.initial.fluid_options import collision_options, solid_options
 from porescale.builders.scene import Scene
 from porescale.common.core.atomic import write_text
+from porescale.common.core.errors import InputError, warn
 from porescale.common.evidence.files import csv_text
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import validate
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 def write_permeability(run: Run, folder: Path) -> list[Path]:
     """Measure the bed and write permeability.csv, a row a snapshot; [] if the scene has no such section.
 
-    Raises InputError where the window holds no grain.  Takes seconds: flow through the bed is driven until steady.
+    Warns where the bed of a snapshot cannot be measured, as without a grain in the window, and leaves its row out: a
+    run that has ended is not lost by it.  Takes seconds: flow through the bed is driven until steady.
     """
     if not run.card["scene"].get("permeability"):
         return []
@@ -32,10 +34,16 @@ def write_permeability(run: Run, folder: Path) -> list[Path]:
     for k in sorted({0, len(run) - 1}):
         snapshot = run.snapshot(k, cells=("velocity",))
         grains = snapshot.clouds["grains"]
-        found = measure_window(scene, grains)
+        try:
+            found = measure_window(scene, grains)
+        except InputError as error:
+            warn(f"no permeability at t = {snapshot.time:g} s: {error}")
+            continue
         flows = found.steady or not math.isfinite(found.permeability)  # a sealed bed would take as long again
         resolved = measure_window(scene, grains, resolved=True).permeability if flows else math.nan
         rows.append(row(snapshot.time, ratio, found, resolved))
+    if not rows:
+        return []
     path = folder / "permeability.csv"
     write_text(path, csv_text(rows[0], ([repr(value) for value in it.values()] for it in rows)))
     return [path]

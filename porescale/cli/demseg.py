@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
@@ -180,7 +181,7 @@ def convert(
         print(f"{file}: leaves out the tangential springs of {which}: scenes start with them at rest")
     for line in refused:
         warn(f"{file}: porescale check refuses it, though demseg run takes the deck: {line}")
-    print(f"{file}: check it with porescale check {file}")
+    print(f"{file}: check it with porescale check {quote(str(file))}")
     return 0
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json as json_text
 import sys
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, Parameter
@@ -127,8 +128,9 @@ def render(
     count = write_frames(opened, shot, folder)
     rows, columns = shot.camera.size
     print(f"{count} frames of {columns} x {rows} px, {shot.scale:.4g} m a pixel, {shot.interval:.4g} s apart")
-    options = f"--mask {folder}/masks --scale {shot.scale:.6g} --interval {shot.interval:.6g} --time {shot.start:g}"
-    print(f"measure with: porescale piv measure {folder}/frames {options}")
+    frames, masks = (quote(f"{folder}/{name}") for name in ("frames", "masks"))
+    options = f"--mask {masks} --scale {shot.scale:.6g} --interval {shot.interval:.6g} --time {shot.start:g}"
+    print(f"measure with: porescale piv measure {frames} {options}")
     return 0
 
 
@@ -204,6 +206,6 @@ def _field(path: Path, moment: float | None) -> Field:
     from porescale.piv.fields.of_run import field_of_run
 
     if path.suffix.lower() in FILMS or (path.is_dir() and any(path.glob("*.png")) and not any(path.glob("*.vtkhdf"))):
-        repair = f"porescale piv measure {path} --out FOLDER, then compare FOLDER"
+        repair = f"porescale piv measure {quote(str(path))} --out FOLDER, then compare FOLDER"
         raise InputError(Fault("field", str(path), "is a film that has not been measured", repair=repair))
     return field_of_run(path, moment) if path.is_dir() else read(path)

@@ -1,6 +1,8 @@
 """Probes, lines, flux sections, load cells, permeability: what they read where it is known; none makes nothing."""
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,7 @@ from porescale.analysis.bed_permeability import write_permeability
 from porescale.analysis.permeability import gebart, kozeny_carman, measure
 from porescale.builders.build import build
 from porescale.builders.parts.flow_fields import vorticity
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, PorescaleWarning
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import scene_as_dict
@@ -239,7 +241,7 @@ def test_permeability_of_a_square_array_is_what_its_drag_says():
     assert smaller.permeability > 1.2 * found.permeability  # the twin that must fail
 
 
-def test_held_discs_alone_have_a_permeability(tmp_path):
+def test_held_discs_alone_have_a_permeability(tmp_path, monkeypatch):
     # The array above, four times, of discs that a scene holds, 5 cells across.
     size, c = 0.002, 0.2
     diameter = 2.0 * size * math.sqrt(c / math.pi)
@@ -256,6 +258,18 @@ def test_held_discs_alone_have_a_permeability(tmp_path):
     # 2 % at ten cells, at first order 4 % at five.
     assert found["permeability (m²)"] == pytest.approx([size**2 / 51.53] * 2, rel=0.05)
     assert found["hydraulic solid fraction ()"] == pytest.approx([c] * 2, rel=1e-6)
+
+    # The bed may leave its window in a run: its end is said, and the run is not lost.
+    full = run.snapshot(0).clouds["grains"]
+    empty = replace(full, position=full.position[:0], data={key: value[:0] for key, value in full.data.items()})
+    clouds = [full, empty]
+    monkeypatch.setattr(run, "snapshot", lambda k, **_: SimpleNamespace(time=0.004 * k, clouds={"grains": clouds[k]}))
+    with pytest.warns(PorescaleWarning, match=r"no permeability at t = 0.004 s: permeability.window: holds no grain"):
+        assert write_permeability(run, tmp_path) == [tmp_path / "permeability.csv"]
+    assert open_run(tmp_path).table("permeability")["time (s)"].tolist() == [0.0]
+    clouds[0] = empty
+    with pytest.warns(PorescaleWarning, match="no permeability at t = 0"):
+        assert write_permeability(run, tmp_path) == []
 
 
 def test_a_window_of_an_array_has_the_permeability_of_the_array():

@@ -1,5 +1,7 @@
 """The virtual camera: tracers go with the flow, stay out of grains, stay dense; films of a run measure its flow."""
 
+import shlex
+
 import cv2
 import numpy as np
 import pytest
@@ -150,12 +152,14 @@ def test_the_command_films_and_says_how_to_measure(run, tmp_path, monkeypatch, c
     from porescale.common.cli.application import main
 
     monkeypatch.setattr("porescale.common.record.open_run.open_run", lambda folder: run)
-    given = ["piv", "render", str(run.folder), "--out", str(tmp_path / "f"), "--scale", "0.2 mm", "--end", "0.05 s"]
+    given = ["piv", "render", str(run.folder), "--out", str(tmp_path / "f g"), "--scale", "0.2 mm", "--end", "0.05 s"]
     assert main(commands(), [*given, "--interval", "25 ms", "--grains", "dark"]) == 0
     said = capsys.readouterr().out
     assert said.startswith("3 frames of 160 x 160 px")
-    assert "porescale piv measure" in said
-    assert len(list((tmp_path / "f" / "frames").glob("*.png"))) == 3
+    words = shlex.split(said.partition("measure with: ")[2])  # of a folder with a blank in its name
+    frames, masks = (str(tmp_path / "f g" / part) for part in ("frames", "masks"))
+    assert words[:6] == ["porescale", "piv", "measure", frames, "--mask", masks]
+    assert len(list((tmp_path / "f g" / "frames").glob("*.png"))) == 3
     for wrong in (["--start", "0.3"], ["--scale", "1 s"], ["--interval", "-1"]):
         assert main(commands(), [*given, *wrong]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1

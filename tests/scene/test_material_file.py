@@ -140,6 +140,21 @@ def test_what_the_scene_says_wins(tmp_path):
     assert soil.porosity == pytest.approx(0.19)
 
 
+def test_permeability_is_under_the_gravity_that_it_counts_under(tmp_path):
+    """9.81 m/s²; with suction that of the scene, under which `soil.permeability` counts there."""
+    material(tmp_path)
+    at_rest = 4e-9 * DENSITY / VISCOSITY
+    named = {"material": "material.toml"}
+
+    def k(soil, **scene):
+        return material_file.with_material({"soil": {**named, **soil}, **scene}, tmp_path)["soil"]["permeability"]
+
+    assert k({}, gravity=98.1) == pytest.approx(at_rest * GRAVITY, rel=1e-14)
+    assert k({"suction": {}}) == pytest.approx(at_rest * GRAVITY, rel=1e-14)
+    assert k({"suction": {}}, gravity=98.1) == pytest.approx(at_rest * 98.1, rel=1e-14)
+    assert k({"suction": {}}, gravity="much") == pytest.approx(at_rest * GRAVITY, rel=1e-14)  # the scene judges it
+
+
 RATE = {"grain_diameter": 1.5e-3, "friction_angle": 0.6, "inertial_number": 0.3}
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from porescale.common.cli.options import Json, List, Threads, print_json, say
+from porescale.common.cli.options import Json, List, Threads, print_json, print_list, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 
@@ -39,7 +39,7 @@ def command(package: Package) -> Callable[..., int]:
         else:
             register, names = peer(package, against, names), (against,)
         if list_:
-            print("\n".join(row.name for row in register))
+            print_list(({"name": row.name} for row in register.chosen(() if against else names)), "{name}", json)
             return 0
         rows = []
         for row in register.run(names, size=size, threads=threads, dtype=dtype, device=device):

@@ -33,6 +33,15 @@ def print_json(rows: Iterable[Mapping[str, Any]]) -> None:
     print(json.dumps(list(rows), indent=1, allow_nan=False))
 
 
+def print_list(rows: Iterable[Mapping[str, Any]], line: str, as_json: bool) -> None:
+    """Print what `--list` found: a ``line`` with the keys of a row in braces for each, or all as a JSON list."""
+    if as_json:
+        print_json(rows)
+        return
+    for row in rows:
+        print(line.format(**row))
+
+
 def use_threads(count: int | None) -> int:
     """Set the number of kernel threads and give it; InputError when this machine has no such number."""
     from porescale.common.compiled.jit import set_threads

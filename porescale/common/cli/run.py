@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
@@ -114,5 +115,5 @@ def summary(command: str, name: str, folder: Path, outcome: Outcome) -> str:
         f"{name}: {outcome.outcome} at t = {outcome.time:.6g} s, step {outcome.step}; "
         f"{outcome.seconds:.3g} s{speed}, {outcome.snapshots} snapshots, {peak_bytes() / 2**20:.0f} MiB at most\n"
         f"look at {folder}: {files}\n"
-        f"more pictures: {command} show {folder}"
+        f"more pictures: {command} show {quote(str(folder))}"
     )

@@ -11,7 +11,17 @@ from cyclopts import App, Parameter
 
 from porescale.common.cli import trade
 from porescale.common.cli.folders import output_folder
-from porescale.common.cli.options import Json, List, Scene, ThreadsOfEach, print_json, require_scene, say, use_threads
+from porescale.common.cli.options import (
+    Json,
+    List,
+    Scene,
+    ThreadsOfEach,
+    print_json,
+    print_list,
+    require_scene,
+    say,
+    use_threads,
+)
 from porescale.common.cli.package import Package
 from porescale.common.cli.trade import circumstances
 from porescale.common.core.errors import Fault, InputError
@@ -71,7 +81,7 @@ def _extremes(package: Package) -> Callable[..., int]:
         assert package.extremes is not None
         tries = package.extremes().chosen(names)
         if list_:
-            print("\n".join(dict.fromkeys(it.axis for it in tries)))
+            print_list(({"name": axis} for axis in dict.fromkeys(it.axis for it in tries)), "{name}", json)
             return 0
         folder = output_folder(out)
         use_threads(threads)
@@ -109,7 +119,7 @@ def _stability(package: Package) -> Callable[..., int]:
         assert package.stability is not None
         flows = package.stability().chosen(names)
         if list_:
-            print("\n".join(f"{flow.name}: {flow.title}" for flow in flows))
+            print_list(({"name": flow.name, "title": flow.title} for flow in flows), "{name}: {title}", json)
             return 0
         folder = output_folder(out)
         use_threads(threads)
@@ -161,7 +171,7 @@ def _convergence(package: Package) -> Callable[..., int]:
         register = package.convergence()
         ladders = register.chosen(names)
         if list_:
-            print("\n".join(f"{it.name}: {it.title}" for it in ladders))
+            print_list(({"name": it.name, "title": it.title} for it in ladders), "{name}: {title}", json)
             return 0
         folder = output_folder(out)
         use_threads(threads)
@@ -205,7 +215,7 @@ def _endurance(package: Package) -> Callable[..., int]:
         assert package.endurance is not None
         chosen = package.endurance().chosen(names)
         if list_:
-            print("\n".join(f"{it.name}: {it.title}" for it in chosen))
+            print_list(({"name": it.name, "title": it.title} for it in chosen), "{name}: {title}", json)
             return 0
         if steps < study.MARKS:
             raise InputError(Fault("--steps", steps, "is too few", "", f">= {study.MARKS}"))
@@ -254,7 +264,8 @@ def _parts(package: Package) -> Callable[..., int]:
         assert package.parts is not None
         kinds = package.parts().chosen(names)
         if list_:
-            print("\n".join(f"{kind.name} (beside {kind.beside})" for kind in kinds))
+            rows_of = ({"name": kind.name, "beside": kind.beside} for kind in kinds)
+            print_list(rows_of, "{name} (beside {beside})", json)
             return 0
         if rounds < 1:
             raise InputError(Fault("--rounds", rounds, "is out of range", "", ">= 1"))

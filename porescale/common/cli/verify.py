@@ -33,7 +33,10 @@ def command(package: Package) -> Callable[..., int]:
         """
         register = package.validations()
         if list_:
-            for item in register.chosen(names, slow=True):
+            found = register.chosen(names, slow=True)
+            if json:
+                print_json({"name": it.name, "slow": it.slow, "source": it.source} for it in found)
+            for item in () if json else found:
                 print(f"{item.name}{' (slow)' if item.slow else ''}: {item.source}")
             return 0
         chosen = register.chosen(names, slow=slow)

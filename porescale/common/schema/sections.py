@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from shlex import quote
 from typing import Any, ClassVar, TypeVar, get_args
 
 import pydantic
@@ -218,7 +219,7 @@ def _require_own_program(scene_type: type[Section], table: Mapping[str, Any], fi
     if not own <= table.keys():
         for section, program in scene_type.elsewhere.items():
             if section in table:
-                problem, repair = f"is a section of scenes of {program}", f"{program} check {file}"
+                problem, repair = f"is a section of scenes of {program}", f"{program} check {quote(str(file))}"
                 raise InputError(Fault(section, problem=problem, repair=repair, file=str(file)))
 
 

@@ -100,6 +100,7 @@ def test_convergence_keeps_each_ladder_as_soon_as_it_is_run(study, monkeypatch) 
 
 def test_convergence_lists_and_prints(study) -> None:
     assert study(2.0, "--list")[1] == "toy.one: t\ntoy.two: t\n"
+    assert json.loads(study(2.0, "--list", "--json")[1])[1] == {"name": "toy.two", "title": "t"}
     code, out = study(2.5, "toy.two", "--json")
     assert code == 0
     assert [row["name"] for row in json.loads(out)] == ["toy.two"]

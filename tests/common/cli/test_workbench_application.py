@@ -144,6 +144,8 @@ def test_verify_fails_when_a_row_fails(toy) -> None:
         assert [row["passed"] for row in json.loads(out)] == [True, False]
     assert toy("verify", "toy.bad")[0] == 1
     assert toy("verify", "--list")[1].splitlines() == ["toy.good: exact", "toy.bad (slow): exact"]
+    rows = json.loads(toy("verify", "--list", "--json")[1])
+    assert rows[1] == {"name": "toy.bad", "slow": True, "source": "exact"}
 
 
 def test_bench_as_json_and_table(toy) -> None:
@@ -152,6 +154,8 @@ def test_bench_as_json_and_table(toy) -> None:
     assert json.loads(out)[0]["size"] == 5
     assert "toys/s" in toy("bench")[1]
     assert toy("bench", "--list")[1] == "toy\n"
+    assert json.loads(toy("bench", "--list", "--json")[1]) == [{"name": "toy"}]
+    assert toy("bench", "tyo", "--list")[0] == 2  # a name that is none, listed or not
 
 
 def test_help_and_version(toy) -> None:
