@@ -216,13 +216,21 @@ def measure(
     return numbers_of(flow, fell, angle), draw(flow, fell, test), table(flow, fell)
 
 
+def numbered(text: str) -> list[int]:
+    """Rows of soil, few to many, of a text such as 6,9,12; ValueError where it is none."""
+    rows = [int(it) for it in text.split(",")]
+    if min(rows) < 1 or sorted(set(rows)) != rows:
+        raise ValueError
+    return rows
+
+
 if __name__ == "__main__":
     asked = options(
-        __doc__ or "", HERE, beds=(int, 8, "beds that water is pressed through, none if 0"),
-        columns=(int, 8, "columns of grains that fall"), end=(float, 0.6, "s that columns fall"),
-        rows=(str, "6,9,12", "rows of soil over the depth of a column, few to many"),
+        __doc__ or "", HERE, beds=(int, 8, "beds that water is pressed through, none if 0", 0),
+        columns=(int, 8, "columns of grains that fall", 2), end=(float, 0.6, "s that columns fall", 0.01),
+        rows=(numbered, "6,9,12", "rows of soil over the depth of a column, few to many"),
     )  # fmt: skip
-    numbers, figure, lines = measure(asked.beds, asked.columns, [int(it) for it in asked.rows.split(",")], asked.end)
+    numbers, figure, lines = measure(asked.beds, asked.columns, asked.rows, asked.end)
     print("\n".join(lines))
     asked.out.mkdir(parents=True, exist_ok=True)
     (asked.out / "table.md").write_text("\n".join(lines) + "\n", encoding="utf-8")

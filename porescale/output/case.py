@@ -36,8 +36,8 @@ def missed(folder: Path, numbers: Mapping[str, float | None]) -> list[str]:
     return [row["name"] for row, it in given if it is not None and not abs(it - row["value"]) <= row["tolerance"]]
 
 
-Option = tuple[type, Any, str] | tuple[type, Any, str, float]
-"""Type, default, help and, of a number, the least that is allowed."""
+Option = tuple[Callable[[str], Any], Any, str] | tuple[Callable[[str], Any], Any, str, float]
+"""Type, or function that reads a text and raises ValueError, default, help and, of a number, the least allowed."""
 
 
 def options(description: str, folder: Path, **more: Option) -> argparse.Namespace:

@@ -64,6 +64,10 @@ def test_a_number_that_is_not_finite_is_refused(monkeypatch, capsys, given):
         ("sph_corrections/sph_corrections", ["--across", "6"], "7 or more"),  # likewise
         ("collapsing_water_column/release", ["--across", "3"], "4 or more"),
         ("dry_levee/safety", ["nowhere"], "no run here"),
+        ("micro_to_macro/micro_to_macro", ["--rows", "x"], "argument --rows: invalid"),
+        ("micro_to_macro/micro_to_macro", ["--rows", "9,6"], "argument --rows: invalid"),  # not few to many
+        ("micro_to_macro/micro_to_macro", ["--beds", "-1"], "0 or more"),
+        ("micro_to_macro/micro_to_macro", ["--columns", "1"], "2 or more"),  # no bar
     ],
 )
 def test_scripts_of_the_continuum_refuse_what_they_cannot_run(monkeypatch, capsys, tmp_path, script, words, said):

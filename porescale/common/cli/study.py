@@ -186,7 +186,7 @@ def _convergence(package: Package) -> Callable[..., int]:
         if json:
             print_json(row.as_dict() for row in made)
         else:
-            print(f"{len(made)} ladders; {folder / study.NAME}.md, .png of each topic")
+            print(f"ladders: {len(made)}; {folder / study.NAME}.md, .png of each topic")
         return 1 if any(row.holds is False for row in made) else 0
 
     return convergence

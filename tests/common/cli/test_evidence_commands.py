@@ -58,7 +58,7 @@ def study(tmp_path: Path, monkeypatch, capsys) -> Callable[..., tuple[int, str]]
 
 def test_convergence_keeps_ladders_and_fails_where_an_order_does_not_hold(study) -> None:
     code, out = study(2.5, "--out", "seen")
-    assert (code, out.startswith("2 ladders; ")) == (0, True)
+    assert (code, out.startswith("ladders: 2; ")) == (0, True)
     assert [round(row["measured"], 6) for row in kept("seen/convergence.json").values()] == [2.5, 5.0]
     assert study(1.5, "toy.one", "--out", "seen")[0] == 1  # the check that must fail
     rows = kept("seen/convergence.json")
