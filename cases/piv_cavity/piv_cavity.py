@@ -63,9 +63,9 @@ def part(field: Field, box: tuple[float, float, float, float]) -> Field:
 
 
 def as_lattice(field: Field, against: Comparison) -> Field:
-    """The lattice's velocity at the vectors of a field that was compared with it."""
+    """The lattice's velocity at the vectors of a field that was compared with it: exact, so without uncertainty."""
     u, v = field.u + against.difference_u, field.v + against.difference_v
-    return replace(field, u=u, v=v, uncertainty=np.full(u.shape, np.nan))
+    return replace(field, u=u, v=v, uncertainty=np.zeros(u.shape))
 
 
 def errors(found: Comparison, field: Field, scale: float) -> dict[str, float]:
