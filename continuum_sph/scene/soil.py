@@ -59,9 +59,7 @@ class Outline(Section):
 class Body(Outline):
     """A piece of ground, with a permeability of its own or that of the soil."""
 
-    permeability: float | None = quantity(
-        "m/s", None, ge=1e-12, le=10, help="k of this piece of ground, in place of soil.permeability"
-    )
+    permeability: float | None = quantity("m/s", None, ge=1e-12, le=10, help="k of this piece of ground alone")
 
 
 class Watch(Outline):
