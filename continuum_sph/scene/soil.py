@@ -89,13 +89,7 @@ class SoilNumerics(Section):
         "", None, ge=0, le=1000, help="diffusion of stress and volume per shear strain"
     )
     restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="the same by sound: soil creeps")
-    parting: float = quantity(
-        "",
-        4.0,
-        ge=0,
-        le=20,
-        help="rate at which particles too near part, per shear strain",
-    )
+    parting: float = quantity("", 4.0, ge=0, le=20, help="rate at which particles too near part, per shear strain")
     repulsion: float = quantity(
         "", 10.0, ge=0, le=100, help="repulsion that keeps soil that bears tension from clumping"
     )

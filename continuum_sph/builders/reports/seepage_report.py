@@ -56,7 +56,8 @@ def seepage_report(scene: Scene) -> Report:
     out.heading("soil and water")
     stiff = state.density * state.sound_speed**2
     step = min(step_limits(scene, law))  # of air beside water, too
-    drag = section.permeabilities[1] / (section.porosity * GRAVITY)
+    _, most = section.permeabilities
+    drag = most / (section.porosity * GRAVITY)
     out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
         step = min(step, moving(scene, out, stiff))
@@ -119,23 +120,33 @@ def moving(scene: Scene, out: Report, stiff: float) -> float:
     section, h = soil_section(scene), pore_law(scene).smoothing.length
     porosity, density, modulus = section.porosity, scene.water.density, largest_modulus(scene)
     sound = (modulus / section.density) ** 0.5
-    ratio, whole = stiff / (porosity * modulus), porosity * density + section.density
+    whole = porosity * density + section.density
     out.row("modulus of a column at the floor", modulus, "Pa")
     out.row("longest step for its sound", min(soil_law(scene).limits(0.0, sound / h, float("inf"))), "s")
-    out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
+    report_stiffness(out, stiff, porosity * modulus, density)
     out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
-    spread = section.permeabilities[0] * modulus / (density * GRAVITY)
+    least, _ = section.permeabilities
+    spread = least * modulus / (density * GRAVITY)
     out.row("consolidation coefficient", spread, "m2/s")
     out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
     step = float(SHARE * h / ((modulus + stiff / porosity) / whole) ** 0.5)
     out.row("longest step for sound in both together", step, "s")
+    return step
+
+
+def report_stiffness(out: Report, stiff: float, modulus: float, density: float) -> None:
+    """Row on how ``stiff`` (K_w, Pa) water is beside soil, and a warning where it stores what soil squeezes out.
+
+    modulus : n M of the soil, Pa;  density : of the water, kg/m³.
+    """
+    ratio = stiff / modulus
+    out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
     if ratio < STIFF:
-        speed = (STIFF * porosity * modulus / density) ** 0.5
+        speed = (STIFF * modulus / density) ** 0.5
         out.warn(
             f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.0f} %; "
             f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
         )
-    return step
 
 
 def critical_gradient(scene: Scene) -> float:
@@ -242,7 +253,8 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
         out.row(name, it.table[-1][1], "m", f"head in the end, from {start:g} to {end:g} m along the {it.side}")
     storage = section.porosity / (state.density * state.sound_speed**2)
     storage += 0.0 if section.held else 1.0 / largest_modulus(scene)
-    spread = section.permeabilities[0] / (state.density * GRAVITY * storage)
+    least, most = section.permeabilities
+    spread = least / (state.density * GRAVITY * storage)
     slow = STEADY_AFTER * (float(np.ptp(soil, axis=0).max()) + numerics.spacing) ** 2 / spread
     out.row("time until the flow is steady", slow, "s", "pressures have spread over the longer side of the ground")
     times, last = moments(scene), scene.time.end
@@ -250,7 +262,7 @@ def faces(scene: Scene, out: Report, soil: Floats) -> None:
     steep = max((float(it.steep.max()) for it in flows), default=0.0)
     lifting = max((float(it.upward.max()) for it in flows), default=0.0)
     if steep > 0.0:
-        way = FARTHEST * numerics.spacing * section.porosity / (section.permeabilities[1] * scene.gravity / GRAVITY)
+        way = FARTHEST * numerics.spacing * section.porosity / (most * scene.gravity / GRAVITY)
         seconds = min(reached(times, it.steep, way) for it in flows)
         out.row("time in which water passes half a spacing", seconds, "s", "about; a run ends there")
         if last > seconds:

@@ -4,7 +4,7 @@ import math
 
 from continuum_sph.builders.parts.soil import material_of, porous_section, soil_law, soil_particles
 from continuum_sph.builders.parts.suction import require_filled, retention_of, suction_section
-from continuum_sph.builders.reports.seepage_report import STIFF
+from continuum_sph.builders.reports.seepage_report import report_stiffness
 from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.unsaturated.richards import MOST_STAGES, SAFE
@@ -40,14 +40,9 @@ def suction_report(scene: Scene) -> Report:
     out.row("time to sink through the soil", porosity * section.height / least, "s", "n H/k")
     out.row("cohesion of half full pores at most", HALF * fringe * law.weight * math.tan(section.friction_angle), "Pa",
             "S_e psi tan phi")  # fmt: skip
-    ratio = law.stiffness / (porosity * modulus)
-    out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
+    report_stiffness(out, law.stiffness, porosity * modulus, scene.water.density)
     out.row("longest step for sound in soil that cannot drain", step, "s")
     out.row("stages of flow in a step", stages, "", f"of full pores; more than {MOST_STAGES} are several")
-    if ratio < STIFF:
-        speed = (STIFF * porosity * modulus / scene.water.density) ** 0.5
-        out.warn(f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.0f} "
-                 f"%; raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness")  # fmt: skip
     if fringe < 2.0 * scene.numerics.spacing:
         out.warn(f"the capillary height is {fringe / scene.numerics.spacing:.2g} spacings: lower numerics.spacing")
     if abs(scene.gravity / GRAVITY - 1.0) > FROM_EARTHS:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import continuum_sph
-from continuum_sph.benchmarks.extremes import EXTREMES, bubble, collapse, spun
+from continuum_sph.benchmarks.extremes import EXTREMES, WATER, bubble, collapse, spun
 from continuum_sph.benchmarks.extremes_seepage import stirred
 from continuum_sph.builders.parts import soil
 from porescale.common.evidence.extremes import REFUSED, STOPPED, Verdict
@@ -51,7 +51,12 @@ def test_what_goes_well_says_how(run, said):
 @pytest.mark.slow
 def test_what_is_judged_is_right():
     """The front of a column let go is that of a twentieth of the Mach number, within half a spacing."""
-    assert isinstance(collapse(0.3)(), Verdict)
+    found = collapse(0.3)()
+    assert isinstance(found, Verdict)
+    assert found.right
+    thick = collapse(0.3, viscosity=1e5 * WATER)()  # the check that must fail
+    assert isinstance(thick, Verdict)
+    assert not thick.right
     assert "least pressure" in spun("kept", 0.0)()
 
 
