@@ -10,6 +10,7 @@ from typing import Any
 from porescale.common.compiled.jit import Kernel, compiler, inline
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.compiled.own_sources import LIBRARIES, place
+from porescale.common.compiled.turns import TURNS
 from porescale.common.core.errors import Fault, InputError
 
 _PLACE = re.compile(r"""(?:at |File ")(?P<file>[^"\n]+?)(?:" ?, line | \()(?P<line>\d+)""")
@@ -78,6 +79,8 @@ def compile_for(law: OwnLaw, *arguments: Any, count: int) -> Callable[..., Any]:
     except Exception as error:
         problem = f"{law.place}: {law.name} raises {type(error).__name__}: {error}"
         raise InputError(Fault("", law.reference, problem, repair="correct it there")) from None
+    finally:
+        TURNS.end()  # numba says nothing of a kernel that it gave up
     got = result if isinstance(result, tuple) else (result,)
     if len(got) != count or not all(isinstance(it, int | float) for it in got):
         what = "a number" if count == 1 else f"{count} numbers"

@@ -10,6 +10,7 @@ import pytest
 from porescale.common.compiled.own import body_force, contact_law, inflow
 from porescale.common.compiled.own_file import law_of
 from porescale.common.compiled.own_kernel import compile_for, kernel_of
+from porescale.common.compiled.turns import TURNS
 from porescale.common.core.errors import InputError
 from tests.reference.folders import ROOT
 from tests.reference.own_laws import write_laws
@@ -151,6 +152,7 @@ def test_what_cannot_be_compiled_is_said_in_one_line_with_its_place(tmp_path: Pa
         compile_for(law_of("laws.py:wanted", tmp_path, "inflow"), 1.0, 0.0, count=2)
     assert UNCOMPILED[text] in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1
+    assert TURNS.name == ""  # progress of the next run names no kernel that nobody compiles
 
 
 def test_functions_made_by_one_function_are_laws_of_their_own() -> None:
