@@ -65,8 +65,6 @@ def seepage_report(scene: Scene) -> Report:
     if scene.air:
         air_report(out, scene, law, air)
     cost(scene, out, step, Counts(len(soil), water + air, waiting))
-    if section.rate is not None:
-        out.heading("strength")
     report_rate(out, section, wet=True)
     report_origin(out, section.origin)
     if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < RATIO:

@@ -74,6 +74,7 @@ def report_rate(out: Report, section: SoilSection, *, wet: bool) -> None:
     rate = section.rate
     if rate is None:
         return
+    out.heading("strength")
     fastest = math.degrees(math.atan(math.sin(rate.friction_angle)))
     out.row("angle beyond which it speeds up without end", fastest, "degrees", "without cohesion and dilatancy")
     pace = math.sqrt(GRAVITY / section.height)
