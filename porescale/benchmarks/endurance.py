@@ -87,6 +87,9 @@ ROUNDING = "round-off: every step, and each of its 4 contact steps, rounds veloc
 PLACES = ("mean place x (diameters)", "mean height (diameters)", "highest grain (diameters)")
 SETTLED = "share of a diameter by which a packing may shift: the overlap of a grain under its weight is 1e-4"
 
+HEAPED = 1_000_000
+"""Steps of which the heap lies still after a tenth, and sleeps after a twentieth; with 100 000 it does neither."""
+
 ENDURANCES = Endurances([
     Endurance(
         "flying grains", "six grains collide in a periodic box of 60 x 40 cells of water, without weight",
@@ -100,7 +103,7 @@ ENDURANCES = Endurances([
         lambda: Watched(heap(), periodic=False),
         (MASS, *(Held(name, lambda steps: 1e-3, SETTLED) for name in PLACES),
          Held("fastest grain (cells/step)", lambda steps: 1e-6, "at rest: 1e-3 of a cell in a thousand steps")),
-        settles=2,
+        settles=2, least=HEAPED,
     ),
     Endurance(
         "sleeping heap", "the same heap sleeps and is not woken by the water, for a fifth of the steps",
@@ -108,7 +111,7 @@ ENDURANCES = Endurances([
         (MASS, Held(ASLEEP, lambda steps: 0.0, "nothing disturbs them"),
          *(Held(name, lambda steps: 0.0, "who sleeps does not move, not by a last digit")
            for name in (*PLACES, "fastest grain (cells/step)"))),
-        settles=5, share=0.2,
+        settles=5, share=0.2, least=HEAPED,
     ),
 ])  # fmt: skip
 """What `porescale study endurance` runs."""

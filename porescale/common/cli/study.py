@@ -217,8 +217,10 @@ def _endurance(package: Package) -> Callable[..., int]:
         if list_:
             print_list(({"name": it.name, "title": it.title} for it in chosen), "{name}: {title}", json)
             return 0
-        if steps < study.MARKS:
-            raise InputError(Fault("--steps", steps, "is too few", "", f">= {study.MARKS}"))
+        if short := [it for it in chosen if steps < it.least]:
+            problem, least = f"is too few for {', '.join(it.name for it in short)}", max(it.least for it in short)
+            repair = "or name others, which --list has" if least > study.FEWEST else ""
+            raise InputError(Fault("--steps", steps, problem, "", f">= {least}", repair))
         folder = output_folder(out)
         use_threads(threads)
         kept = study.finished(folder) if resume else {}

@@ -31,6 +31,8 @@ GROWTH = 1.0
 FOUND = "found wrong ()"
 CHECK_EVERY = 100
 """Steps between checks of the state, as in a run."""
+FEWEST = MARKS * CHECK_EVERY
+"""Steps of a flow at least: from the first mark on, a check is behind it, and all memory that one takes."""
 KEEP_EVERY = 30.0
 """Seconds after which an unfinished flow is kept again: what a killed process loses at most."""
 
@@ -66,7 +68,8 @@ class Held:
 @dataclass(frozen=True)
 class Endurance:
     """What lasts.  start : makes it;  settles : marks before the first that counts;  share : of the requested steps
-    that it does, where they are dear;  before : steps before all marks, in which the start comes to rest."""
+    that it does, where they are dear;  before : steps before all marks, in which the start comes to rest;  least :
+    requested steps at least: with fewer what ``settles`` has not come to rest at the mark from which on it must."""
 
     name: str
     title: str
@@ -75,6 +78,7 @@ class Endurance:
     settles: int = 1
     share: float = 1.0
     before: int = 0
+    least: int = FEWEST
 
     def steps(self, requested: int) -> int:
         """Number of steps out of ``requested`` ones that this row does."""

@@ -166,7 +166,9 @@ def test_a_state_that_does_not_fit_is_refused(tmp_path):
 
 
 def test_commands_of_other_flows_write_one_table(tmp_path, monkeypatch, capsys):
-    flows = [replace(endurance.ENDURANCES["settled heap"], name=name, start=Counter, held=()) for name in "abc"]
+    flows = [
+        replace(endurance.ENDURANCES["settled heap"], name=name, start=Counter, held=(), least=100) for name in "abc"
+    ]
     package = replace(PACKAGE, endurance=lambda: Endurances(flows))
     for name in "bca":
         words = ["study", "endurance", name, "--steps", "100", "--resume", "--out", str(tmp_path)]
@@ -175,6 +177,18 @@ def test_commands_of_other_flows_write_one_table(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.glob("*.h5"))
     assert main(application(package), [*words[:5], "--out", str(tmp_path)]) == 0
     assert list(finished(tmp_path)) == ["a"]  # the twin: without --resume it begins anew
+
+
+def test_too_few_steps_to_come_to_rest_in_are_refused_with_the_flows_that_need_more(tmp_path, capsys):
+    words = ["study", "endurance", "--out", str(tmp_path / "out"), "--steps"]
+    assert main(application(PACKAGE), [*words, "2000"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("--steps = 2000: is too few for settled heap, sleeping heap (allowed: >= 1000000)")
+    assert main(application(PACKAGE), [*words, "1999", "flying grains"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == "--steps = 1999: is too few for flying grains (allowed: >= 2000)"
+    assert not (tmp_path / "out").exists()
+    assert main(application(PACKAGE), [*words, "2000", "flying grains"]) == 0  # the twin
 
 
 def test_marks_lie_apart_evenly_and_count_from_where_it_has_settled():
