@@ -15,6 +15,7 @@ from falls import Fall, grains_fall, soil_falls
 from flows import Bed, bed, darcy
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from slides import Slopes, draw_slopes, numbers_of_slopes, slopes
 
 import continuum_sph as cs
 import porescale as ps
@@ -152,18 +153,18 @@ def numbers_of(flow: Sequence[Compared], columns: Columns, angle: float) -> dict
     }  # fmt: skip
 
 
-def table(flow: Sequence[Compared], columns: Columns) -> list[str]:
+def table(flow: Sequence[Compared], columns: Columns, slid: Slopes | None = None) -> list[str]:
     """What both scales have, and whether they agree, as lines of a table in Markdown."""
     less = [replace(it, name=f"{it.name}, a quarter of the damping") for it in columns.compared(less=True)]
-    rows = [it.cells() for it in [*flow, *columns.compared(), *less]]
+    rows = [it.cells() for it in [*flow, *columns.compared(), *less, *(slid.compared() if slid else [])]]
     return ["| " + " | ".join(it) + " |" for it in [HEAD, ["---"] * len(HEAD), *rows]]
 
 
-def draw(flow: Sequence[Compared], columns: Columns, rows: Floats) -> Figure:
+def draw(flow: Sequence[Compared], columns: Columns, rows: Floats, slid: Slopes | None = None) -> Figure:
     """Flow, strength, quantities of the columns over the spacing, and their way; bars are intervals at 95 %."""
     figure = Figure(figsize=(12.0, 6.0), layout="constrained")
     panels = list(figure.subplots(2, 4).flat)
-    panels.pop().axis("off")
+    draw_slopes(panels.pop(), slid, (GRAINS, SOIL, LESS))
     for at, it in enumerate(flow):
         scale(panels[0], it, at, SOIL, "continuum" if not at else None)
     panels[0].set(xticks=[0, 1], xlim=(-0.6, 1.8), title="q / (k i)")
@@ -206,14 +207,17 @@ def scale(panel: Axes, it: Compared, at: float, colour: str, label: str | None) 
 
 
 def measure(
-    beds: int, columns: int, rows: Sequence[int], end: float, flooded: float = 0.073
+    beds: int, columns: int, rows: Sequence[int], end: float, flooded: float = 0.073, slid: int = 0
 ) -> tuple[dict[str, float | None], Figure, list[str]]:
     """Numbers of expected.toml, the picture, and the table.  rows : of soil particles over the depth of a column;
-    end : of its fall, s;  flooded : until when water is pressed through beds, s: two periods of their rebound."""
+    end : of its fall, s;  flooded : until when water is pressed through beds, s: two periods of their rebound;
+    slid : layers of grains on a slope, none if 0."""
     flow = flows([bed(seed, flooded) for seed in range(1, beds + 1)]) if beds else []
     fell = columns_fall(columns, rows, end)
     angle, test = strength()
-    return numbers_of(flow, fell, angle), draw(flow, fell, test), table(flow, fell)
+    layers = slopes(slid) if slid else None
+    numbers = numbers_of(flow, fell, angle) | numbers_of_slopes(layers)
+    return numbers, draw(flow, fell, test, layers), table(flow, fell, layers)
 
 
 def numbered(text: str) -> list[int]:
@@ -227,10 +231,12 @@ def numbered(text: str) -> list[int]:
 if __name__ == "__main__":
     asked = options(
         __doc__ or "", HERE, beds=(int, 8, "beds that water is pressed through, none if 0", 0),
-        columns=(int, 8, "columns of grains that fall", 2), end=(float, 0.6, "s that columns fall", 0.01),
+        columns=(int, 8, "columns of grains that fall", 2),
+        slopes=(int, 8, "layers of grains that slide under water, none if 0", 0),
+        end=(float, 0.6, "s that columns fall", 0.01),
         rows=(numbered, "6,9,12", "rows of soil over the depth of a column, few to many"),
     )  # fmt: skip
-    numbers, figure, lines = measure(asked.beds, asked.columns, asked.rows, asked.end)
+    numbers, figure, lines = measure(asked.beds, asked.columns, asked.rows, asked.end, slid=asked.slopes)
     print("\n".join(lines))
     asked.out.mkdir(parents=True, exist_ok=True)
     (asked.out / "table.md").write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -14,7 +14,8 @@ from porescale.scene.ranges import FRICTION, LENGTH
 
 
 class Packing(Section):
-    """Grains placed at random without overlap, then settled dry under gravity until they fill a rectangle.
+    """Grains placed at random without overlap, then settled dry under gravity until they fill a rectangle.  Of gravity
+    that is tilted they settle under what points down, and are let go under all of it.
 
     Their number is packing_fraction * width * height over the mean grain area, or that of sizes; how high they stand in
     the end, friction and seed decide.  With settle = false they stay where they were placed (packing_fraction at most

@@ -206,11 +206,12 @@ def test_what_is_let_out_again_is_not_warned_of(right):
 def test_gravity_down_a_periodic_channel_is_said_to_drive_no_fluid():
     down = {"gravity": [1.0, -9.81], "domain__left": "periodic", "domain__right": "periodic"}
     (line,) = warned(water(**down, fluid__body_force=None), "gravity along x")
-    assert line.endswith("fluid.body_force = [1000, 0] drives it")
+    assert line.endswith("fluid.body_force = [1000, 0] drives it, [0, 0] leaves it still")
     simulation = build(water(**down, fluid__body_force=None))
     simulation.advance(20)
     assert simulation.series()["largest fluid speed (m/s)"] == 0.0
-    assert not warned(water(**down, fluid__body_force=[10.0, 0.0]), "gravity along x")
+    for given in ([10.0, 0.0], [0.0, 0.0]):
+        assert not warned(water(**down, fluid__body_force=given), "gravity along x")
     assert not warned(water(**{**down, "gravity": [0.0, -9.81]}, fluid__body_force=None), "gravity along x")
     sinking = {"domain__bottom": "periodic", "domain__top": "periodic"}
     assert not warned(column(**ONE, **sinking), "gravity along y")

@@ -11,7 +11,7 @@ import continuum_sph
 import porescale
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
-NO_SCENES = ("expected.toml", "trade.toml", "material.toml")
+NO_SCENES = ("expected.toml", "trade.toml", "material.toml", "rates.toml")
 FILES = [file for file in sorted(CASES.glob("*/*.toml")) if file.name not in NO_SCENES]
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.seepage import Resistance, Seepage
-from continuum_sph.soil import Material, SoilFlow
+from continuum_sph.soil import Material, Rate, SoilFlow
 from continuum_sph.validation.seepage.setups import COLUMNS, GRAINS, WATER, water_in
 from continuum_sph.validation.soil.setups import in_tank
 from porescale.common.core.constants import GRAVITY
@@ -27,8 +27,10 @@ VALIDATIONS = Validations()
 
 @dataclass(frozen=True)
 class WetSlope:
-    """degrees : β;  seeping : water flows along the slope, else it is still;  rows : particles over the depth of 1 m;
-    friction : sin φ;  permeability m/s;  stiffness : E, Pa;  sound_speed : of the water, m/s."""
+    """degrees : β;  seeping : water flows along the slope, else it is still;  rows : particles over the depth;
+    friction : sin φ;  permeability m/s;  stiffness : E, Pa;  sound_speed : of the water, m/s;  depth : m;
+    grains : their density, kg/m³;  poisson : ν;  rate : how friction grows with the rate of shear, None where it does
+    not."""
 
     degrees: float
     seeping: bool
@@ -38,16 +40,20 @@ class WetSlope:
     permeability: float = 1e-2
     stiffness: float = 2e6
     sound_speed: float = 45.0
+    depth: float = 1.0
+    grains: float = GRAINS
+    poisson: float = 0.3
+    rate: Rate | None = None
 
     @property
     def buoyant(self) -> float:
         """Buoyant density of the soil, γ'/g, kg/m³."""
-        return (1.0 - self.porosity) * (GRAINS - WATER)
+        return (1.0 - self.porosity) * (self.grains - WATER)
 
     @property
     def whole(self) -> float:
         """Density of the saturated soil, γ_sat/g, kg/m³."""
-        return self.porosity * WATER + (1.0 - self.porosity) * GRAINS
+        return self.porosity * WATER + (1.0 - self.porosity) * self.grains
 
     def driving(self, seeping: bool) -> float:
         """Weight that drives over that which holds."""
@@ -65,22 +71,30 @@ class WetSlope:
             * (self.driving(seeping) * math.sin(tilt) - self.friction * math.cos(tilt))
         )  # fmt: skip
 
+    def shown(self, acceleration: float, seeping: bool | None = None) -> float:
+        """Friction τ/σ' that slows the layer, by its acceleration (m/s²);  seeping : other than its own."""
+        tilt, seeping = math.radians(self.degrees), self.seeping if seeping is None else seeping
+        slowed = acceleration / (GRAVITY * self.buoyant / self.whole)
+        return (self.driving(seeping) * math.sin(tilt) - slowed) / math.cos(tilt)
+
     def build(self) -> tuple[Seepage, SoilFlow]:
         """Both layers, and the soil of them, at rest with the stress of the weight across."""
-        spacing, tilt, n = 1.0 / self.rows, math.radians(self.degrees), self.porosity
-        size = (COLUMNS * spacing, 2.0)
-        material = Material(self.stiffness, (1.0 - n) * GRAINS, sin_friction=self.friction, porosity=n)
-        x = square_lattice((0.0, 0.0), (size[0], 1.0), spacing)
+        spacing, tilt, n, depth = self.depth / self.rows, math.radians(self.degrees), self.porosity, self.depth
+        size = (COLUMNS * spacing, 2.0 * depth)
+        solid = (1.0 - n) * self.grains
+        material = Material(self.stiffness, solid, self.poisson, sin_friction=self.friction, porosity=n, rate=self.rate)
+        x = square_lattice((0.0, 0.0), (size[0], depth), spacing)
         across = GRAVITY * math.cos(tilt)
         # σ_xx = σ_yy is what shearing along the slope leads to: soil that is not there yet contracts and presses water.
-        stress = geostatic(1.0 - x[:, 1], replace(material, density=self.buoyant), across, 1.0)
+        stress = geostatic(depth - x[:, 1], replace(material, density=self.buoyant), across, 1.0)
         ground = in_tank(x, stress, size, spacing, material, gravity=GRAVITY, tilt=tilt, sides="none")
         if not self.seeping:
             along = GRAVITY * math.sin(tilt) * self.buoyant / material.density
             ground.law = replace(ground.law, gravity=(along, -across))
         both = water_in(
-            ground, x.copy(), WATER * across * (1.0 - x[:, 1]), size, spacing, self.sound_speed, Resistance(n),
-            permeability=self.permeability, gravity=across, modulus=material.column_modulus, alpha=0.1, cut=True,
+            ground, x.copy(), WATER * across * (depth - x[:, 1]), size, spacing, self.sound_speed, Resistance(n),
+            grains=self.grains, permeability=self.permeability, gravity=across, modulus=material.column_modulus,
+            alpha=0.1, cut=True,
         )  # fmt: skip
         if self.seeping:
             both.water.law = replace(both.water.law, gravity=(GRAVITY * math.sin(tilt), -across))
@@ -111,9 +125,7 @@ def slides(given: WetSlope) -> tuple[float, float]:
 
 def friction(given: WetSlope, seeping: bool | None = None) -> float:
     """Friction that slows a wet layer, τ/σ', by the acceleration that it shows;  seeping: as if it were so."""
-    tilt, seeping = math.radians(given.degrees), given.seeping if seeping is None else seeping
-    slowed = slides(given)[0] / (GRAVITY * given.buoyant / given.whole)
-    return (given.driving(seeping) * math.sin(tilt) - slowed) / math.cos(tilt)
+    return given.shown(slides(given)[0], seeping)
 
 
 def at_three_spacings(given: WetSlope) -> Measured:

@@ -258,18 +258,19 @@ def _gap_behind(scene: Scene, it: Rectangle, axis: int) -> tuple[float, float]:
 
 
 def _check_tilt(scene: Scene, scales: Scales, warnings: list[str]) -> None:
-    """Warn where gravity has a part along periodic sides, as down an inclined channel, and nothing else drives it."""
+    """Warn where gravity has a part along periodic sides, as down an inclined channel, and nothing else drives it, not
+    even a body force that is said to be zero."""
     assert scene.fluid
     force, g = scene.fluid.body_force, scene.gravity
     along = [axis for axis in range(2) if g[axis] and scene.domain.periodic[axis]]
-    if len(along) != 1 or isinstance(force, OwnLaw) or force[along[0]]:
+    if len(along) != 1 or isinstance(force, OwnLaw) or "body_force" in scene.fluid.model_fields_set:
         return
     if scene.grains is not None and not g[1 - along[0]]:
         return  # grains that sink for ever, in fluid that stays
     wanted = [scales.density * g[axis] if axis in along else 0.0 for axis in range(2)]
     warnings.append(
         f"gravity along {'xy'[along[0]]}, which is periodic, drives grains but no fluid: pressure balances it;"
-        f" fluid.body_force = [{wanted[0]:g}, {wanted[1]:g}] drives it"
+        f" fluid.body_force = [{wanted[0]:g}, {wanted[1]:g}] drives it, [0, 0] leaves it still"
     )
 
 

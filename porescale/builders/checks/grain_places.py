@@ -186,9 +186,9 @@ def _check_settling(scene: Scene, faults: list[Fault]) -> None:
     packing, domain = scene.grains.packing, scene.domain
     (gx, gy), fluid_density = scene.gravity, scene.fluid.density if scene.fluid else 0.0
     otherwise = "or set grains.packing.settle = false"
-    if gx != 0 or gy > -WEAK:
+    if gy > -WEAK:
         problem, repair = "a packing settles straight down", f"give [0, -9.81], {otherwise}"
-        allowed = f"[0, {-WEAK:g} or below]"
+        allowed = f"[any, {-WEAK:g} or below]"
         faults.append(Fault("gravity", f"[{gx:g}, {gy:g}]", problem, "m/s^2", allowed, repair))
     if scene.grains.density <= fluid_density:
         problem, repair = "the grains do not sink, so they do not settle", f"make them heavier, {otherwise}"

@@ -21,7 +21,7 @@ from porescale.common.schema.messages import every_key
 from porescale.common.schema.scene_file import assign, parse_key
 
 ROOT = Path(__file__).resolve().parents[3]
-NO_SCENES = ("expected.toml", "trade.toml", "material.toml")
+NO_SCENES = ("expected.toml", "trade.toml", "material.toml", "rates.toml")
 FILES = [file for file in sorted((ROOT / "cases").glob("*/*.toml")) if file.name not in NO_SCENES]
 SCHEMAS = {ps.__name__: ps.Scene.json_schema() for ps in (porescale, continuum_sph)}
 

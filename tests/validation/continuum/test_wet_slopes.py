@@ -1,5 +1,7 @@
 """Beside each row on slopes under water a twin that must fail."""
 
+from dataclasses import replace
+
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
@@ -20,6 +22,21 @@ def test_limits_of_wet_slopes_are_those_of_the_textbook():
     for seeping in (False, True):
         limit = WetSlope(20.0, seeping).limit()
         assert WetSlope(limit, seeping).acceleration() == pytest.approx(0.0, abs=1e-14)
+
+
+def test_a_layer_of_another_depth_slides_alike_where_all_else_goes_with_it():
+    deep = WetSlope(28.0, False, rows=10)
+    part = 0.04  # of depth and stress, Froude's: times and speeds go with its root
+    root = part**0.5
+    flat = replace(
+        deep, depth=part, stiffness=part * deep.stiffness, permeability=root * deep.permeability,
+        sound_speed=root * deep.sound_speed,
+    )  # fmt: skip
+    wanted, found = deep.slides(0.1, 0.2)[0], flat.slides(0.1 * root, 0.2 * root)[0]
+    # the same steps but for round-off of the times, eps a step, and for the step at which a time is reached: 1e-9
+    assert found == pytest.approx(wanted, rel=1e-9)
+    other = replace(flat, permeability=deep.permeability, friction=0.4)  # the twin: friction does not go with the depth
+    assert other.slides(0.1 * root, 0.2 * root)[0] > 1.5 * wanted
 
 
 @pytest.mark.slow
