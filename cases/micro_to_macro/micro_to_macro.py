@@ -11,8 +11,18 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import numpy as np
 from compared import HEAD, Compared, half, half_of, power
+from consolidates import (
+    ROWS,
+    consolidated,
+    consolidation,
+    draw_layers,
+    layer_numbers,
+    squeezed,
+    with_permeability,
+)
 from falls import Fall, grains_fall, soil_falls
 from flows import Bed, bed, darcy
+from layers import Layer
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -129,6 +139,16 @@ def strength() -> tuple[float, Floats]:
     return math.asin(strong) / known("critical_friction_angle")[0], rows
 
 
+def layers(count: int) -> tuple[list[Layer], list[Layer], list[Compared]]:
+    """``count`` beds that consolidate, the soil of ROWS that does, and both beside each other; nothing of none."""
+    if not count:
+        return [], [], []
+    beds = [squeezed(seed) for seed in range(1, count + 1)]
+    k, off = power(*specimens(), np.array([it.porosity for it in beds]))
+    beds, soil = with_permeability(beds, k), [consolidated(it) for it in ROWS]
+    return beds, soil, consolidation(beds, soil, off, known("stiffness"), known("Poissons_ratio"))
+
+
 def numbers_of(flow: Sequence[Compared], columns: Columns, angle: float) -> dict[str, float | None]:
     """The rows of expected.toml; None where no bed was asked for."""
     front, centre, height, time = columns.compared()
@@ -206,14 +226,19 @@ def scale(panel: Axes, it: Compared, at: float, colour: str, label: str | None) 
 
 
 def measure(
-    beds: int, columns: int, rows: Sequence[int], end: float, flooded: float = 0.073
+    beds: int, columns: int, rows: Sequence[int], end: float, squeezes: int = 0, flooded: float = 0.073
 ) -> tuple[dict[str, float | None], Figure, list[str]]:
     """Numbers of expected.toml, the picture, and the table.  rows : of soil particles over the depth of a column;
-    end : of its fall, s;  flooded : until when water is pressed through beds, s: two periods of their rebound."""
+    end : of its fall, s;  squeezes : beds that consolidate;  flooded : until when water is pressed through beds, s: two
+    periods of their rebound."""
     flow = flows([bed(seed, flooded) for seed in range(1, beds + 1)]) if beds else []
     fell = columns_fall(columns, rows, end)
     angle, test = strength()
-    return numbers_of(flow, fell, angle), draw(flow, fell, test), table(flow, fell)
+    loaded, soil, both = layers(squeezes)
+    numbers, figure = numbers_of(flow, fell, angle) | layer_numbers(loaded, both), draw(flow, fell, test)
+    if both:
+        draw_layers(figure.axes[-1], loaded, soil[-1], both, (GRAINS, SOIL))
+    return numbers, figure, table([*flow, *both], fell)
 
 
 def numbered(text: str) -> list[int]:
@@ -228,9 +253,10 @@ if __name__ == "__main__":
     asked = options(
         __doc__ or "", HERE, beds=(int, 8, "beds that water is pressed through, none if 0", 0),
         columns=(int, 8, "columns of grains that fall", 2), end=(float, 0.6, "s that columns fall", 0.01),
+        squeezed=(int, 8, "beds that consolidate, none if 0", 0),
         rows=(numbered, "6,9,12", "rows of soil over the depth of a column, few to many"),
     )  # fmt: skip
-    numbers, figure, lines = measure(asked.beds, asked.columns, asked.rows, asked.end)
+    numbers, figure, lines = measure(asked.beds, asked.columns, asked.rows, asked.end, asked.squeezed)
     print("\n".join(lines))
     asked.out.mkdir(parents=True, exist_ok=True)
     (asked.out / "table.md").write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -68,6 +68,7 @@ def test_a_number_that_is_not_finite_is_refused(monkeypatch, capsys, given):
         ("micro_to_macro/micro_to_macro", ["--rows", "9,6"], "argument --rows: invalid"),  # not few to many
         ("micro_to_macro/micro_to_macro", ["--beds", "-1"], "0 or more"),
         ("micro_to_macro/micro_to_macro", ["--columns", "1"], "2 or more"),  # no bar
+        ("micro_to_macro/micro_to_macro", ["--squeezed", "-1"], "0 or more"),
     ],
 )
 def test_scripts_of_the_continuum_refuse_what_they_cannot_run(monkeypatch, capsys, tmp_path, script, words, said):
