@@ -52,29 +52,31 @@ def squeezed(seed: int, settings: Sequence[str] = ()) -> Layer:
         share = min(max((time - REST) / RAMP, 0.0), 1.0)
         out[:, 1] -= 0.5 * (1.0 - math.cos(math.pi * share)) * more
 
-    def look() -> tuple[float, Floats, Floats]:
-        """Height (m) of the centre; pressure (Pa) of the water, and share that discs fill, of each row of cells."""
-        fields = simulation.snapshot().grids["fields"]
-        solid = fields.cells["solid_fraction"].astype(float)
-        pressure = (fields.cells["pressure"] * (1.0 - solid)).sum(axis=1) / (1.0 - solid).sum(axis=1)
-        return float(np.average(simulation.positions[:, 1], weights=area)), pressure, solid.mean(axis=1)
+    def look() -> tuple[float, Floats, Floats, Floats]:
+        """Height (m) of the centre; of each row of cells pressure (Pa) in the pores and in all cells, and what discs
+        fill."""
+        cells = simulation.snapshot().grids["fields"].cells
+        solid, pressure = cells["solid_fraction"].astype(float), cells["pressure"].astype(float)
+        pores = (pressure * (1.0 - solid)).sum(axis=1) / (1.0 - solid).sum(axis=1)
+        centre = float(np.average(simulation.positions[:, 1], weights=area))
+        return centre, pores, pressure.mean(axis=1), solid.mean(axis=1)
 
     simulation.force(weight)
     simulation.advance(round(REST / simulation.step_seconds))
-    centre, still, solid = look()
+    centre, still, resting, solid = look()
     rows, last = [], solid
     while simulation.time < REST + 0.5 * RAMP + LONG:
         simulation.advance(round(LOOKS / simulation.step_seconds))
-        there, pressure, last = look()
-        rows.append((simulation.time - REST - 0.5 * RAMP, centre - there, pressure - still))
+        there, pores, everywhere, last = look()
+        rows.append((simulation.time - REST - 0.5 * RAMP, centre - there, pores - still, everywhere - resting))
+    times, down, excess, everywhere = (np.array(it) for it in zip(*rows, strict=True))
     y = (np.arange(len(still)) + 0.5) * fluid.spacing
     inside = (y > MIDDLE[0] * 2.0 * centre) & (y < MIDDLE[1] * 2.0 * centre)
-    discs = 0.5 * float((solid + last)[inside].mean())  # in the middle of the settlement
-    filled = discs / grains.hydraulic_radius_ratio**2
-    times, down, excess = (np.array(it) for it in zip(*rows, strict=True))
-    width, stiff = scene.domain.width, fluid.density * (fluid.spacing / fluid.step) ** 2 / 3.0
-    height = float(area.sum()) / (filled * width)  # of the same grains, if all lay as those in the middle do
-    return Layer(height, 1.0 - filled, float(more.sum()) / width, times, y, excess, down, 1.0 / stiff, sudden=True)
+    filled = 0.5 * float((solid + last)[inside].mean()) / grains.hydraulic_radius_ratio**2  # amid the settlement
+    stored = float(everywhere[:, inside].sum() / excess[:, inside].sum())
+    height = float(area.sum()) / (filled * scene.domain.width)  # of the same grains, if all lay as in the middle
+    load, stiff = float(more.sum()) / scene.domain.width, fluid.density * (fluid.spacing / fluid.step) ** 2 / 3.0
+    return Layer(height, 1.0 - filled, load, times, y, excess, down, stored / stiff, sudden=True)
 
 
 def consolidated(rows: int, settings: Sequence[str] = ()) -> Layer:
@@ -178,4 +180,4 @@ def draw_layers(
     panel.legend(fontsize=6, frameon=False)
     panel.tick_params(labelsize=7)
     panel.set(xlim=(0.0, 0.6), ylim=(0.0, 1.0), xlabel="T_v")
-    panel.set_title("left of excess at the floor, settlement (dashed)", fontsize=9)
+    panel.set_title("excess left, settlement (dashed)", fontsize=9)

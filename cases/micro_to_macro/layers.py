@@ -17,7 +17,7 @@ class Layer:
 
     height m;  porosity;  load : Pa, what it weighs more at its floor;  times : (t,) s, since;  excess : (t, rows) Pa,
     of its water at ``heights`` (rows,) m, the floor first;  settled : (t,) m, of its centre;
-    storage : 1/Pa, by what its water is compressed: n/K_w; on a lattice 1/K_w, as there is water inside of discs, too;
+    storage : 1/Pa, by what its water is compressed: n/K_w; more on a lattice, which has water inside of discs, too;
     sudden : the load was put on, so that what compresses water comes at once; else water bears all of it at first;
     mobility : m²/(Pa s), the K/(rho nu) that is said of it.
     """
