@@ -70,7 +70,7 @@ def squeezed(seed: int, settings: Sequence[str] = ()) -> Layer:
         there, pores, everywhere, last = look()
         rows.append((simulation.time - REST - 0.5 * RAMP, centre - there, pores - still, everywhere - resting))
     times, down, excess, everywhere = (np.array(it) for it in zip(*rows, strict=True))
-    y = (np.arange(len(still)) + 0.5) * fluid.spacing
+    y: Floats = (np.arange(len(still)) + 0.5) * fluid.spacing
     inside = (y > MIDDLE[0] * 2.0 * centre) & (y < MIDDLE[1] * 2.0 * centre)
     filled = 0.5 * float((solid + last)[inside].mean()) / grains.hydraulic_radius_ratio**2  # amid the settlement
     stored = float(everywhere[:, inside].sum() / excess[:, inside].sum())
@@ -131,7 +131,9 @@ def consolidation(
     m = modulus_of(e[0], nu[0])
     hard, soft = (ps.load(HERE / name).contact for name in ("bed.toml", "squeezed.toml"))
     assert hard
+    assert hard.stiffness
     assert soft
+    assert soft.stiffness
     softer = soft.stiffness / hard.stiffness
     off = math.hypot(e[1] / e[0], 0.5 * (modulus_of(e[0], nu[0] + nu[1]) - modulus_of(e[0], nu[0] - nu[1])) / m)
     return [
