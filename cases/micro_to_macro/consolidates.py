@@ -70,7 +70,7 @@ def squeezed(seed: int, settings: Sequence[str] = ()) -> Layer:
         there, pores, everywhere, last = look()
         rows.append((simulation.time - REST - 0.5 * RAMP, centre - there, pores - still, everywhere - resting))
     times, down, excess, everywhere = (np.array(it) for it in zip(*rows, strict=True))
-    y: Floats = (np.arange(len(still)) + 0.5) * fluid.spacing
+    y = np.asarray((np.arange(len(still)) + 0.5) * fluid.spacing, dtype=np.float64)
     inside = (y > MIDDLE[0] * 2.0 * centre) & (y < MIDDLE[1] * 2.0 * centre)
     filled = 0.5 * float((solid + last)[inside].mean()) / grains.hydraulic_radius_ratio**2  # amid the settlement
     stored = float(everywhere[:, inside].sum() / excess[:, inside].sum())
