@@ -11,8 +11,18 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import numpy as np
 from compared import HEAD, Compared, half, half_of, power
+from consolidates import (
+    ROWS,
+    consolidated,
+    consolidation,
+    draw_layers,
+    layer_numbers,
+    squeezed,
+    with_permeability,
+)
 from falls import Fall, grains_fall, soil_falls
 from flows import Bed, bed, darcy
+from layers import Layer
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from slides import Slopes, draw_slopes, numbers_of_slopes, slopes
@@ -130,6 +140,16 @@ def strength() -> tuple[float, Floats]:
     return math.asin(strong) / known("critical_friction_angle")[0], rows
 
 
+def layers(count: int) -> tuple[list[Layer], list[Layer], list[Compared]]:
+    """``count`` beds that consolidate, the soil of ROWS that does, and both beside each other; nothing of none."""
+    if not count:
+        return [], [], []
+    beds = [squeezed(seed) for seed in range(1, count + 1)]
+    k, off = power(*specimens(), np.array([it.porosity for it in beds]))
+    beds, soil = with_permeability(beds, k), [consolidated(it) for it in ROWS]
+    return beds, soil, consolidation(beds, soil, off, known("stiffness"), known("Poissons_ratio"))
+
+
 def numbers_of(flow: Sequence[Compared], columns: Columns, angle: float) -> dict[str, float | None]:
     """The rows of expected.toml; None where no bed was asked for."""
     front, centre, height, time = columns.compared()
@@ -161,10 +181,12 @@ def table(flow: Sequence[Compared], columns: Columns, slid: Slopes | None = None
 
 
 def draw(flow: Sequence[Compared], columns: Columns, rows: Floats, slid: Slopes | None = None) -> Figure:
-    """Flow, strength, quantities of the columns over the spacing, and their way; bars are intervals at 95 %."""
-    figure = Figure(figsize=(12.0, 6.0), layout="constrained")
-    panels = list(figure.subplots(2, 4).flat)
-    draw_slopes(panels.pop(), slid, (GRAINS, SOIL, LESS))
+    """Flow, strength, quantities of the columns over the spacing, and their way; friction of slopes, and a place for
+    layers; bars are intervals at 95 %."""
+    figure = Figure(figsize=(10.5, 8.5), layout="constrained")
+    *panels, below, last = figure.subplots(3, 3).flat
+    draw_slopes(below, slid, (GRAINS, SOIL, LESS))
+    last.axis("off")
     for at, it in enumerate(flow):
         scale(panels[0], it, at, SOIL, "continuum" if not at else None)
     panels[0].set(xticks=[0, 1], xlim=(-0.6, 1.8), title="q / (k i)")
@@ -207,17 +229,21 @@ def scale(panel: Axes, it: Compared, at: float, colour: str, label: str | None) 
 
 
 def measure(
-    beds: int, columns: int, rows: Sequence[int], end: float, flooded: float = 0.073, slid: int = 0
+    beds: int, columns: int, rows: Sequence[int], end: float, flooded: float = 0.073, slid: int = 0, squeezes: int = 0
 ) -> tuple[dict[str, float | None], Figure, list[str]]:
     """Numbers of expected.toml, the picture, and the table.  rows : of soil particles over the depth of a column;
     end : of its fall, s;  flooded : until when water is pressed through beds, s: two periods of their rebound;
-    slid : layers of grains on a slope, none if 0."""
+    slid, squeezes : layers of grains on a slope, and beds that consolidate, none if 0."""
     flow = flows([bed(seed, flooded) for seed in range(1, beds + 1)]) if beds else []
     fell = columns_fall(columns, rows, end)
     angle, test = strength()
-    layers = slopes(slid) if slid else None
-    numbers = numbers_of(flow, fell, angle) | numbers_of_slopes(layers)
-    return numbers, draw(flow, fell, test, layers), table(flow, fell, layers)
+    sliding = slopes(slid) if slid else None
+    loaded, soil, settled = layers(squeezes)
+    numbers = numbers_of(flow, fell, angle) | numbers_of_slopes(sliding) | layer_numbers(loaded, settled)
+    figure = draw(flow, fell, test, sliding)
+    if settled:
+        draw_layers(figure.axes[-1], loaded, soil[-1], settled, (GRAINS, SOIL))
+    return numbers, figure, table([*flow, *settled], fell, sliding)
 
 
 def numbered(text: str) -> list[int]:
@@ -231,12 +257,14 @@ def numbered(text: str) -> list[int]:
 if __name__ == "__main__":
     asked = options(
         __doc__ or "", HERE, beds=(int, 8, "beds that water is pressed through, none if 0", 0),
-        columns=(int, 8, "columns of grains that fall", 2),
+        columns=(int, 8, "columns of grains that fall", 2), end=(float, 0.6, "s that columns fall", 0.01),
         slopes=(int, 8, "layers of grains that slide under water, none if 0", 0),
-        end=(float, 0.6, "s that columns fall", 0.01),
+        squeezed=(int, 8, "beds that consolidate, none if 0", 0),
         rows=(numbered, "6,9,12", "rows of soil over the depth of a column, few to many"),
     )  # fmt: skip
-    numbers, figure, lines = measure(asked.beds, asked.columns, asked.rows, asked.end, slid=asked.slopes)
+    numbers, figure, lines = measure(
+        asked.beds, asked.columns, asked.rows, asked.end, slid=asked.slopes, squeezes=asked.squeezed
+    )
     print("\n".join(lines))
     asked.out.mkdir(parents=True, exist_ok=True)
     (asked.out / "table.md").write_text("\n".join(lines) + "\n", encoding="utf-8")

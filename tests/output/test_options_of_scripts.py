@@ -69,6 +69,7 @@ def test_a_number_that_is_not_finite_is_refused(monkeypatch, capsys, given):
         ("micro_to_macro/micro_to_macro", ["--beds", "-1"], "0 or more"),
         ("micro_to_macro/micro_to_macro", ["--columns", "1"], "2 or more"),  # no bar
         ("micro_to_macro/micro_to_macro", ["--slopes", "-1"], "0 or more"),
+        ("micro_to_macro/micro_to_macro", ["--squeezed", "-1"], "0 or more"),
     ],
 )
 def test_scripts_of_the_continuum_refuse_what_they_cannot_run(monkeypatch, capsys, tmp_path, script, words, said):

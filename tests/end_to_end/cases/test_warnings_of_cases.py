@@ -25,6 +25,7 @@ WARNED: dict[tuple[str, str | None], str] = {
     ("loose_and_dense_collapse/scene.toml", "fine"): FEW_CELLS,
     ("micro_to_macro/bed.toml", "draft"): FEW_CELLS,
     ("micro_to_macro/slope.toml", "draft"): FEW_CELLS,
+    ("micro_to_macro/squeezed.toml", None): FEW_CELLS,
     ("permeameter/scene.toml", "draft"): FEW_CELLS,
 }
 """What is warned of, by scene and quality: all of it, in one line each."""
