@@ -154,8 +154,8 @@ def settled_speed(
 ) -> float:
     """Speed over the expected one of a free disc of density ``ratio`` that sinks or rises in a closed channel.
 
-    Expected: (s - 1) g pi a²/(mu K), K by Faxen.  gravity_in_fluid: the fluid is pulled down too, and what it then
-    bears of a disc at rest, in place of the buoyancy, is measured and put right.
+    Expected: (s - 1) g pi a²/(mu K), K by Faxen.  gravity_in_fluid: the fluid is pulled down too; what it then
+    leaves of a disc's load at rest, of its pressure and the push of the force, is measured and put right.
     """  # fmt: skip
     width = round(diameter / blockage)
     nu, a = viscosity(relaxation_time), diameter / 2
@@ -174,13 +174,14 @@ def settled_speed(
         if held:
             coupled.grains.hold(0)
         elif pulled:
-            coupled.weight[0, 1] = -coupled.grains.discs.mass[0] * g + math.pi * a**2 * g - buoyancy
+            coupled.weight[0, 1] = -coupled.grains.discs.mass[0] * g + math.pi * a**2 * g - left
         discs = coupled.grains.discs
         memory = max((width / (2 * math.pi)) ** 2 / nu, (ratio + 1) * math.pi * a**2 / (nu * 16))
-        value = (lambda: float(coupled.fluid_force[0, 1])) if held else lambda: float(discs.velocity[0, 1])
+        load, push = coupled.fluid_force, coupled.push
+        value = (lambda: float(load[0, 1] + push[0, 1])) if held else lambda: float(discs.velocity[0, 1])
         return steady(coupled, value, memory, 1e-4)
 
-    buoyancy = made(True, True) if gravity_in_fluid else 0.0
+    left = made(True, True) if gravity_in_fluid else 0.0
     return abs(made(False, gravity_in_fluid)) / speed
 
 
