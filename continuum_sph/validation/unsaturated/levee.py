@@ -120,7 +120,7 @@ class Levee(FullLevee):
         return least(self.slope(flow), centres, tuple(depths), shallow=0.1 * self.height)
 
 
-STANDARD = Levee(end=4.1)
+STANDARD = Levee(end=4.5)
 KEPT = Levee(high=0.3, end=2.5)
 """The river kept low, for as long as it takes the other to fail."""
 SLID = 0.05  # of the height, that the toe slides after its factor is 1
@@ -190,9 +190,9 @@ def sliding_row() -> Measured:
 @VALIDATIONS.row(
     "continuum.levee_stands_by_suction",
     source="Maeda & Sakai 2004, fig. 15: it is the rise that fails it; slices give a factor of 1.2 at the low river",
-    because="a slope of 1 : 2 is at its limit without suction, and its toe, which seepage leaves there, moves by 0.026 "
+    because="a slope of 1 : 2 is at its limit without suction, and its toe, which seepage leaves there, moves by 0.025 "
     "in these 2 s: a third of that",
-    tolerance=0.0087,
+    tolerance=0.0082,
     slow=True,
 )
 def standing_row() -> Measured:
