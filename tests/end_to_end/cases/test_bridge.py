@@ -77,7 +77,7 @@ def test_the_command_compares_and_writes_its_table_on_a_tiny_set_up(case):
     assert numbers["mass of the column of soil over that of grains"] == pytest.approx(1.0, abs=0.03)
     assert len(lines) == 2 + 2 * len(case.SEEN)
     assert all(line.count("|") == len(case.HEAD) + 1 for line in lines)
-    assert len(figure.axes) == 8
+    assert len(figure.axes) == 9
     # too short to go a centimetre: no time, and so no agreement
     late = [line for line in lines if line.startswith("| time")]
     assert late
