@@ -191,5 +191,5 @@ def test_still_water_does_not_creep():
 
 
 @pytest.mark.slow
-def test_still_water_creeps_at_the_pace_of_sound():  # the twin that must fail
-    assert creep(noise_floor=0.0) > STAYS
+def test_still_water_creeps_at_the_pace_of_sound():  # the twin that must fail: 0.11 mm
+    assert creep(noise_floor=0.0, smoothing_ratio=STANDING) > STAYS

@@ -1,6 +1,7 @@
 """The case from grains to the continuum: slopes under water, of grains and of the soil that they make."""
 
 import math
+import tomllib
 from dataclasses import replace
 from types import ModuleType
 from typing import Any
@@ -81,6 +82,17 @@ def test_what_is_let_go_gains_its_buoyant_weight_along_the_slope_until_the_floor
     # in one step nothing slips yet: what the grains at the floor are held by grows from zero
     assert gained[0] == pytest.approx(1.0, abs=2e-3)
     assert gained[-1] < 0.5  # the twin: then friction holds
+
+
+def test_the_material_with_rates_is_the_other_one_and_how_its_friction_grows():
+    plain, rated = (tomllib.loads((CASE / it).read_text(encoding="utf-8")) for it in ("material.toml", "rates.toml"))
+    assert {it: plain[it] for it in ("format", "soil", "strength", "pores")} == {
+        it: rated[it] for it in ("format", "soil", "strength", "pores")
+    }
+    assert plain["measured"].items() <= rated["measured"].items()
+    assert plain["made"]["seeds"] == rated["made"]["seeds"]
+    assert "rate" in rated
+    assert "rate" not in plain  # else one of them would do
 
 
 def test_friction_is_read_of_the_acceleration_that_it_leaves(case):
