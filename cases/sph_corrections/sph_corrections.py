@@ -20,7 +20,7 @@ METHODS: dict[str, dict[str, float | str | int]] = {
         "density_diffusion": 0.0, "artificial_viscosity": 0.001,
     },
     "density diffusion": {"kernel": "cubic", "smoothing_ratio": 1.0, "artificial_viscosity": 0.001},
-    "Wendland, h 1.35": {"artificial_viscosity": 0.001},
+    "Wendland, h 1.375": {"artificial_viscosity": 0.001},
     "corrected gradients": {"artificial_viscosity": 0.001, "gradient": "corrected"},
     "shifting": {"artificial_viscosity": 0.001, "shifting": 2.0},
     "both": {"artificial_viscosity": 0.001, "gradient": "corrected", "shifting": 2.0},
@@ -98,8 +98,8 @@ def main() -> int:
         print(f"{name:22}" + "".join(f"{number:22.4f}" for number in numbers))
     numbers = {
         "vortices, both": found["both"][0],
-        "vortices, plain gradients without shifting": found["Wendland, h 1.35"][0],
-        "plates, plain gradients": found["Wendland, h 1.35"][1],
+        "vortices, plain gradients without shifting": found["Wendland, h 1.375"][0],
+        "plates, plain gradients": found["Wendland, h 1.375"][1],
     }
     return conclude(HERE, numbers, figure, given.out)
 

@@ -27,7 +27,7 @@ RULES = ("sound", "acceleration", "other layers")
 def even_crowd(smoothing: Smoothing, spacing: float) -> float:
     """`stress.CROWD` of a square lattice of particles at ``spacing`` (m): spacing² Σ -(1/r) W' over 2π W(0).
 
-    Equilateral triangles of as many particles an area have as much (0.6724, the square lattice 0.6727, at h = 1.35
+    Equilateral triangles of as many particles an area have as much (0.6827, the square lattice 0.6830, at h = 1.375
     spacings, Wendland C2), so what is more is crowded, not ordered otherwise.
     """
     kind, h = smoothing.kind, smoothing.length

@@ -42,8 +42,8 @@ def inverse(xx, xy, yy):
 
 @inline
 def lattice_gradient(kind, h, spacing):
-    """1/M of a square lattice: plain sums times this have gradients that are exact on it.  1.017 of Wendland's kernel
-    at h = 1.35 spacings.  kind, h (m): of the kernel;  spacing, m."""
+    """1/M of a square lattice: plain sums times this have gradients that are exact on it.  1.013 of Wendland's kernel
+    at h = 1.375 spacings.  kind, h (m): of the kernel;  spacing, m."""
     whole = 0.0
     reach = int(SUPPORT * h / spacing) + 1
     for column in range(-reach, reach + 1):

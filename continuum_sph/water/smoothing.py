@@ -15,9 +15,9 @@ from porescale.common.core.ranges import Range, require_in_range
 CUBIC, WENDLAND = 0, 1
 NAMES = ("cubic", "wendland")
 SUPPORT = 2.0  # smoothing lengths
-RATIO = 1.35
-"""Smoothing length over spacing where a scene names none: the least with which ground under water stands for a million
-steps and more (docs/theory/seepage.md, "Limits")."""
+RATIO = 1.375
+"""Smoothing length over spacing where a scene names none: the least with which sums of W rise all the way when columns
+of a square lattice slide past each other, so that water at rest stands (docs/theory/water.md, "Water at rest")."""
 
 
 @inline

@@ -172,7 +172,7 @@ def test_a_kept_run_without_a_key_of_today_says_which_value_is_as_before(kept_ru
             f"soil.numerics.{key} = 'absent': was {it}; resume with {it}, or start another run"
             for key, it in BEFORE.items()
         ),
-        "numerics.smoothing_ratio = 1.35: was 1.3; resume with 1.3, or start another run",
+        "numerics.smoothing_ratio = 1.375: was 1.3; resume with 1.3, or start another run",
         "numerics.noise_floor = 0.001: the run was begun by a version without it; set it to 0.0 to go on as that did, "
         "or start another run",
     ]

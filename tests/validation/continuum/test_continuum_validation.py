@@ -49,7 +49,9 @@ def test_plain_sums_as_printed_miss_the_flow_between_plates_by_the_lattices_erro
     row = tolerance("continuum.poiseuille_start_up")
     assert channels.channel_error("poiseuille", 20, corrected=False) < row
     monkeypatch.setattr(Law, "lattice", 1.0)
-    assert channels.channel_error("poiseuille", 20, corrected=False) > 3.0 * row
+    printed = channels.channel_error("poiseuille", 20, corrected=False)
+    assert printed > 2.0 * row
+    assert printed > kernels.LATTICE  # of the viscosity, and so of the speed
 
 
 def test_sound_over_plain_sums_as_printed_is_late_by_the_lattices_error(monkeypatch):
@@ -70,7 +72,7 @@ def test_channel_walls_are_of_second_order():
 
 
 def test_vortices_without_shifting_die_of_gaps():
-    assert flows.vortex_error(30, shifting=0.0, end=0.2) > 4.0 * tolerance("continuum.taylor_green_decay")
+    assert flows.vortex_error(30, shifting=0.0, end=0.2) > 3.0 * tolerance("continuum.taylor_green_decay")
 
 
 def test_vortices_without_corrected_gradients_fade_too_fast():
