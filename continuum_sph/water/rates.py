@@ -4,7 +4,7 @@ dv_i/dt = f {-(1/ρ_i) Σ V_j (p_i + p_j) ∇_i W - Σ m_j Π_ij ∇_i W + lamin
 dρ_i/dt = f ρ_i Σ V_j v_ij · ∇_i W + diffusion                                              (eq. 25)
 
 f = 1/M of the lattice at the start (`kernel_correction.lattice_gradient`) makes the sums exact on it; eqs 34 and 25
-have 1, and are 1.7 % weak each with the default kernel, at any spacing.  With corrected gradients L does this.
+have 1, and are 1.3 % weak each with the default kernel, at any spacing.  With corrected gradients L does this.
 
 Eq. 34 has p_i/ρ_i² + p_j/ρ_j² with masses; (p_i + p_j) V_j/ρ_i is the same within one fluid but for its small
 changes of density, holds between fluids of any two densities, and is what continuity with volumes does the work of:

@@ -32,7 +32,7 @@ def pore_law(scene: Scene) -> Law:
     """Parameters of the water in a scene with soil.
 
     Among grains gradients are corrected, as those of the soil are: total stress is in balance where pressure and
-    effective stress cancel, and would not by 1.7 % of both.  Density diffusion takes departures from linear fields only
+    effective stress cancel, and would not by 1.3 % of both.  Density diffusion takes departures from linear fields only
     there: any other lets water through that the soil keeps back; it is as much less as pores are smaller than the
     whole.  In the open both are those of water alone (`seepage.mixture.open_gradients`).
     """

@@ -32,7 +32,8 @@ BYTES = 770  # per particle of water and walls, lists included: 3 200 of a pond
 HELD_BYTES, MOVING_BYTES = 1250, 1900  # per particle of soil, its list of the water about it included
 REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
-STEPS = 400_000  # for which a lattice of water at rest over ground keeps its level with less than `RATIO` spacings
+STEPS = 400_000  # for which water at rest over ground keeps its level with smoothing lengths of less than
+STANDS = 1.35  # spacings, with which it does for two million
 STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
 BROAD, APART = 6.0, 3.0  # spacings of open water in a strip that keeps its level, and from it to the ground
 PIECES = 100  # of a run, to add up what passes a face whose head rises
@@ -67,7 +68,7 @@ def seepage_report(scene: Scene) -> Report:
     cost(scene, out, step, Counts(len(soil), water + air, waiting))
     report_rate(out, section, wet=True)
     report_origin(out, section.origin)
-    if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < RATIO:
+    if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < STANDS:
         out.warn(
             f"water at rest over ground keeps its level for some {STEPS} steps; then its lattice gives way, and it "
             f"sinks by up to a hundredth of its depth; numerics.smoothing_ratio = {RATIO:g} mends it"

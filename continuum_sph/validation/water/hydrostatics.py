@@ -49,8 +49,8 @@ def hydrostatic_row() -> Measured:
 @VALIDATIONS.row(
     "continuum.water_stays_at_rest",
     source="exact: no motion; scale the speed of sound, 10 √(2 g H)",
-    because="a settling lattice leaves at most 1.7 % of g unbalanced; the widest pattern of a start that is its own "
-    "mirror image, k² = (2π/W)² + (π/H)², has 0.017 g/(ν k²), ν = α h c0/16 (half the pairs approach); c0² = 200 g H",
+    because="a settling lattice leaves at most 1.3 % of g unbalanced; the widest pattern of a start that is its own "
+    "mirror image, k² = (2π/W)² + (π/H)², has 0.013 g/(ν k²), ν = α h c0/16 (half the pairs approach); c0² = 200 g H",
     tolerance=LATTICE * 16.0 / (0.1 * 0.05 * RATIO * 200.0) / ((2.0 * np.pi / 0.5) ** 2 + np.pi**2),
 )
 def rest_row() -> Measured:

@@ -107,6 +107,7 @@ def test_water_that_is_to_rest_over_ground_for_long_is_warned_of():
 
     assert said(1000.0, smoothing_ratio=1.3)
     assert not said(1000.0)
+    assert not said(1000.0, smoothing_ratio=1.35)
     assert not said(1.0, smoothing_ratio=1.3)
 
 

@@ -82,7 +82,7 @@ def test_vortices_without_corrected_gradients_fade_too_fast():
 @pytest.mark.slow
 def test_water_at_rest_that_is_shifted_all_the_same_sinks(monkeypatch):
     monkeypatch.setattr(step, "QUIET", 0.0)
-    assert flows.sunk(10.0) > 2.0 * tolerance("continuum.shifted_water_keeps_its_volume")
+    assert flows.sunk(20.0) > 1.2 * tolerance("continuum.shifted_water_keeps_its_volume")
 
 
 @pytest.mark.slow
