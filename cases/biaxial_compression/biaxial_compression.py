@@ -53,7 +53,7 @@ def compress(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *
     plain = load(SCENE, settings=settings)
     assert plain.grains
     assert plain.grains.packing
-    assert plain.domain.top.velocity
+    assert isinstance(plain.domain.top.velocity, tuple)
     diameter, rate = plain.grains.packing.diameter, -plain.domain.top.velocity[1] / plain.domain.height
     if discs:
         wide = diameter * math.sqrt(0.5 * discs * math.pi / 4.0 / SOLID)

@@ -31,7 +31,7 @@ def column(viscosity: float, across: int, end: float) -> Simulation:
         "time": {"end": end},
         "output": {"snapshot_interval": end, "series_interval": end},
     }
-    return build(Scene(**made))
+    return build(Scene.model_validate(made))
 
 
 def watch(model: Simulation, end: float) -> tuple[dict[str, np.ndarray], dict[float, np.ndarray]]:

@@ -120,12 +120,13 @@ def draw(runs: Beds, path: Path) -> None:
         for k, one in enumerate(many):
             it, label = numbers(one), f"{made}, {one['fraction']:.3f}" if k == 0 else None
             time, front, _, pressure = np.array(one["rows"]).T
-            line = {"color": COLOURS[made], "lw": 1.0, "label": label}
+            line: dict[str, Any] = {"color": COLOURS[made], "lw": 1.0, "label": label}
             axes[0].plot(time / it["fall"], front / LENGTH, **line)
             axes[1].plot(time / it["fall"], (pressure - HYDROSTATIC) / it["weight"], **line)
             axes[2].plot(*(np.array([*one["profile"].items()]).T / LENGTH), **line)
         if made in EXPERIMENT:
-            it, hollow = EXPERIMENT[made], {"color": COLOURS[made], "marker": "o", "mfc": "none", "ls": "none"}
+            it = EXPERIMENT[made]
+            hollow: dict[str, Any] = {"color": COLOURS[made], "marker": "o", "mfc": "none", "ls": "none"}
             weight, fall = scales(it)
             axes[0].plot(np.array(it["time"]) / fall, np.array(it["front"]) / 6.0, **hollow)
             axes[1].plot(np.array(it["pressure time"]) / fall, np.array(it["pressure"]) / weight, **hollow)

@@ -209,8 +209,8 @@ def draw(flow: Sequence[Compared], columns: Columns, rows: Floats, slid: Slopes 
         panel.set_ylabel("cm" if usual.unit == "m" else usual.unit)
     for fell, colour, label in ((columns.grains, GRAINS, "grains"), (columns.soil, SOIL, "continuum"),
                                 (columns.less, LESS, "damping a quarter")):  # fmt: skip
-        for it in fell:
-            panels[6].plot(it.times, 100.0 * it.centre, color=colour, lw=0.7, label=label if it is fell[0] else None)
+        for one in fell:
+            panels[6].plot(one.times, 100.0 * one.centre, color=colour, lw=0.7, label=label if one is fell[0] else None)
     panels[6].set(xlabel="time, s", title="centre of mass, cm")
     for panel in panels:
         panel.title.set_fontsize(9)

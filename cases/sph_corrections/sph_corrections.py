@@ -96,12 +96,12 @@ def main() -> int:
     print(f"{'':22}" + "".join(f"{title:>22}" for title in titles))
     for name, numbers in found.items():
         print(f"{name:22}" + "".join(f"{number:22.4f}" for number in numbers))
-    numbers = {
+    measured = {
         "vortices, both": found["both"][0],
         "vortices, plain gradients without shifting": found["Wendland, h 1.375"][0],
         "plates, plain gradients": found["Wendland, h 1.375"][1],
     }
-    return conclude(HERE, numbers, figure, given.out)
+    return conclude(HERE, measured, figure, given.out)
 
 
 if __name__ == "__main__":

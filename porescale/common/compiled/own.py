@@ -90,7 +90,7 @@ class OwnLaw:
 
 def contact_law(
     function: object = None, /, *, keys: Mapping[str, str] | None = None
-) -> Callable[[FunctionType], OwnLaw]:
+) -> Callable[[Callable[..., Any]], OwnLaw]:
     """Make a function a contact law, for ``[contact] law = "laws.py:NAME"``.
 
     The function is given (overlap, closing, radius, mass, p) and returns the normal force, N/m, > 0 where it pushes the
@@ -106,7 +106,7 @@ def contact_law(
     return lambda made: _law(CONTACT_LAW, made, keys or {})
 
 
-def body_force(function: FunctionType) -> OwnLaw:
+def body_force(function: Callable[..., Any]) -> OwnLaw:
     """Make a function (x, y, t) a body force: the force (fx, fy) on a volume, N/m3, at a place (m) and time (s).
 
     ``[fluid] body_force = "laws.py:NAME"`` lets it act on the fluid.  A function (x, y) is worked out once.
@@ -114,7 +114,7 @@ def body_force(function: FunctionType) -> OwnLaw:
     return _law(BODY_FORCE, function, {})
 
 
-def inflow(function: FunctionType) -> OwnLaw:
+def inflow(function: Callable[..., Any]) -> OwnLaw:
     """Make a function (s, t) an inflow: the velocity (u, v), m/s, along a side at a time (s).
 
     s : distance (m) from the side's left or lower end.  ``[domain] left = { kind = "velocity", velocity =
