@@ -113,7 +113,7 @@ def test_a_force_is_newtons_in_a_dry_scene():
 
 @pytest.mark.parametrize("kind", ["tank", "soil", "levee"])
 def test_a_force_moves_the_middle_of_mass(kind):
-    """The first steps, in which walls are not yet reached by what the force starts: change of momentum is F t."""
+    """The first step, in which walls are hardly reached by what the force starts: change of momentum is F t."""
     plain, hooked = build(scene_of(kind)), build(scene_of(kind))
     mass = hooked.masses
 
@@ -122,11 +122,11 @@ def test_a_force_moves_the_middle_of_mass(kind):
         out[:, 1] = 20.0 * mass
 
     for sim in (plain, hooked):
-        sim.run(steps=2)
+        sim.run(steps=1)
     gained = mass @ (hooked.velocities - plain.velocities)
-    # Walls and sound carry part of it away within two steps of a quarter of h/c.
+    # Walls and sound carry 0, 3 and 6 % of it away within a step of a quarter of h/c, twice as much in two.
     assert gained[1] == pytest.approx(20.0 * mass.sum() * hooked.time, rel=0.1)
-    assert abs(gained[0]) < 0.1 * gained[1]
+    assert abs(gained[0]) < 0.01 * gained[1]
 
 
 def test_grains_that_are_held_stay_and_bodies_of_segments_have_none():
