@@ -9,18 +9,20 @@ from continuum_sph import Scene
 from continuum_sph.builders import water_flow
 from continuum_sph.validation.water import channels, flows, setups
 from continuum_sph.water import Flow, Layer, Smoothing, Tait
+from continuum_sph.water.smoothing import RATIO
 from porescale import GRAVITY
 from porescale.common.neighbors import PairList
 from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
+PLAIN = f"Wendland, h {RATIO:g}"
 METHODS: dict[str, dict[str, float | str | int]] = {
     "as printed": {
         "kernel": "cubic", "smoothing_ratio": 1.0, "smoothing_length": "evolved", "density_filter": 30,
         "density_diffusion": 0.0, "artificial_viscosity": 0.001,
     },
     "density diffusion": {"kernel": "cubic", "smoothing_ratio": 1.0, "artificial_viscosity": 0.001},
-    "Wendland, h 1.375": {"artificial_viscosity": 0.001},
+    PLAIN: {"artificial_viscosity": 0.001},
     "corrected gradients": {"artificial_viscosity": 0.001, "gradient": "corrected"},
     "shifting": {"artificial_viscosity": 0.001, "shifting": 2.0},
     "both": {"artificial_viscosity": 0.001, "gradient": "corrected", "shifting": 2.0},
@@ -98,8 +100,8 @@ def main() -> int:
         print(f"{name:22}" + "".join(f"{number:22.4f}" for number in numbers))
     measured = {
         "vortices, both": found["both"][0],
-        "vortices, plain gradients without shifting": found["Wendland, h 1.375"][0],
-        "plates, plain gradients": found["Wendland, h 1.375"][1],
+        "vortices, plain gradients without shifting": found[PLAIN][0],
+        "plates, plain gradients": found[PLAIN][1],
     }
     return conclude(HERE, measured, figure, given.out)
 

@@ -33,7 +33,7 @@ def excess_pressures(
     Source: Biot, J. Acoust. Soc. Am. 28 (1956) 168, without added mass; Zienkiewicz, Chang & Bettess, Géotechnique 30
     (1980) 385, in one dimension.
     """
-    from scipy.linalg import expm
+    from scipy.linalg import expm  # takes longer to import than a scene to be judged
 
     cells, n = len(start), porosity
     faces = cells + 1

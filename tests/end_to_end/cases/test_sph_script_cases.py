@@ -10,6 +10,7 @@ import pytest
 
 from continuum_sph.validation.water import fluids as trials_fluids
 from continuum_sph.water.parameters import Law
+from continuum_sph.water.smoothing import RATIO
 from porescale.output import case as cases
 from porescale.output.case import expected, missed
 from tests.reference.folders import CASES, script
@@ -63,7 +64,7 @@ def test_a_bar_of_clay_bears_its_own_turning_with_repulsion_and_not_without(conc
 
 def test_both_corrections_buy_what_their_case_says(concluded):
     case = "sph_corrections"
-    numbers = concluded(case, change=only(METHODS=["Wendland, h 1.375", "both"]))
+    numbers = concluded(case, change=only(METHODS=[f"Wendland, h {RATIO:g}", "both"]))
     assert missed(CASES / case, numbers) == []
 
 
@@ -71,8 +72,8 @@ def test_sums_as_printed_miss_plates_and_corrections_that_are_none_miss_vortices
     # The twin that must fail: no number for the lattice; no correction in place of both, and both in place of none.
     def change(module: Any) -> None:
         vortices = module.vortices
-        module.vortices = lambda name, *rest: vortices({"both": "Wendland, h 1.375"}.get(name, "both"), *rest)
-        module.METHODS = {name: module.METHODS[name] for name in ("Wendland, h 1.375", "both")}
+        module.vortices = lambda name, *rest: vortices({"both": module.PLAIN}.get(name, "both"), *rest)
+        module.METHODS = {name: module.METHODS[name] for name in (module.PLAIN, "both")}
         module.rest = lambda *_: (0.0, 0.0)  # no row speaks of it
 
     monkeypatch.setattr(Law, "lattice", 1.0)
