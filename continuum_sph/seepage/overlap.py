@@ -73,11 +73,12 @@ class Overlap:
         self.reach = np.full(water + soil, length)
         self.weight = np.zeros(0)
 
-    def update(self, water: Floats, soil: Floats) -> None:
-        """Take positions (n, 2) m of both layers; lists follow, and room for the weights."""
+    def update(self, water: Floats, soil: Floats) -> bool:
+        """Take positions (n, 2) m of both layers; lists follow, and room for the weights.  Whether lists are new."""
         self.x[: self.water], self.x[self.water :] = water, soil
-        self.pairs.update(self.x, self.reach)
+        new = self.pairs.update(self.x, self.reach)
         self._make_room()
+        return new
 
     def restore(self, state: dict[str, NDArray[np.generic]], water: Floats, soil: Floats) -> None:
         """Go on from the ``state`` of the list, taken at these positions (n, 2) m: it holds, and nothing is counted."""

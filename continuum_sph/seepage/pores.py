@@ -23,7 +23,9 @@ from continuum_sph.seepage.mixture import (
 from continuum_sph.seepage.overlap import Overlap, Reach
 from continuum_sph.seepage.pressure_face import PressureFace, follow, prescribe_pressure
 from continuum_sph.seepage.resistance import Resistance
+from continuum_sph.seepage.sheet_pile import CutPairList
 from continuum_sph.seepage.skeleton import Skeleton
+from continuum_sph.seepage.volume_excess import PACE, Walls, excess_about_water, fill_about_soil, room_before, take_up
 from continuum_sph.water.step import Flow
 from porescale.common.compiled.simd import LANES
 from porescale.common.core.types import Floats
@@ -34,9 +36,9 @@ class PoreFlow(Flow):
     """Water of a law among the grains of a skeleton.
 
     resistance : law of drag;  specific_weight (fluid,) N/m³, of several fluids, see `gather_soil`, or empty;  faces :
-    faces of given pressure;  pores (15, fluid + LANES) what water particles have about them, see `mixture`;  borne
-    (soil, 2) N/m, drag on the soil of the last half step;  heat (fluid + soil,) J/m, work that drag took from both
-    layers.
+    faces of given pressure;  pores (15, fluid + LANES) what water particles have about them, see `mixture`;  excess
+    (fluid,) of volume when pairs were listed last, see `volume_excess`;  borne (soil, 2) N/m, drag on the soil of the
+    last half step;  heat (fluid + soil,) J/m, work that drag took from both layers.
     """
 
     skeleton: Skeleton = field(kw_only=True)
@@ -52,6 +54,7 @@ class PoreFlow(Flow):
         self.pores[[POROSITY, ROOM]] = 1.0
         self.home = self.layer.x.copy()  # of walls: where they stood at the start, grains reach no further
         self.thrust, self.push, self.parts = np.zeros((fluid, 4)), np.zeros((fluid, 2)), np.zeros((4, fluid + LANES))
+        self.full, self.excess, self.corrected = np.zeros(self.skeleton.count), np.zeros(fluid), False
         self.borne = np.zeros((self.skeleton.count, 2))
         self.heat = np.zeros(fluid + self.skeleton.count)
 
@@ -74,16 +77,32 @@ class PoreFlow(Flow):
         """Evaluate rates and forces of the mixture, as `Flow.evaluate` does; forces of the water on the soil beside."""
         layer, soil = self.layer, self.skeleton
         x, length = layer.x[: layer.fluid], self.law.smoothing.length
-        self.overlap.update(x, soil.x)
+        new = self.overlap.update(x, soil.x)
         super().evaluate(step, ratio)
         self.thrust[:, :2] = x
         share_forces(
             layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, self.budget[0],
             self.thrust,
         )  # fmt: skip
+        if self.corrected:
+            take_up(
+                layer.fluid, layer.mass, layer.record, self.pores, self.excess, PACE / length, layer.rate,
+                self.budget[0],
+            )  # fmt: skip
         load_soil(
             layer.fluid, *self.overlap.rows, soil.x, soil.grains, self.thrust, soil.force, length, *self.pairs.period
         )  # fmt: skip
+        if new:
+            self.find_excess()
+
+    def find_excess(self) -> None:
+        """Overwrite ``excess`` with that of now."""
+        layer, soil, law, rows = self.layer, self.skeleton, self.law, self.overlap.rows
+        pile = (self.pairs.at, self.pairs.bottom, self.pairs.half) if isinstance(self.pairs, CutPairList) else None
+        room = room_before(Walls(self.lower, self.upper, pile), soil.x, law.spacing, law.smoothing.length)
+        fill_about_soil(layer.fluid, *rows, layer.record, layer.material, room, self.full)
+        excess_about_water(layer.fluid, *rows, soil.burden, layer.material, self.full, self.excess)
+        self.corrected = bool(self.excess.any())
 
     def sum_pairs(self, half: float) -> None:
         """Sum over pairs as `Flow.sum_pairs` does, for the mixture: gradients are corrected among grains alone."""
@@ -177,6 +196,7 @@ class PoreFlow(Flow):
         """Everything that later steps depend on."""
         return super().state() | {
             "pores": self.pores.copy(),
+            "excess": self.excess.copy(),
             "heat": self.heat.copy(),
             "borne": self.borne.copy(),
             "record": self.layer.record.copy(),
@@ -190,6 +210,8 @@ class PoreFlow(Flow):
         super().restore(state)
         self.pores[:], self.heat[:], self.borne[:] = state["pores"], state["heat"], state["borne"]
         self.layer.record[:], self.home[:] = state["record"], state["home"]
+        self.excess[:] = state.get("excess", 0.0)
+        self.corrected = bool(self.excess.any())
         if "matrix" in state:
             self.layer.matrix[:] = state["matrix"]
         self.overlap.restore(state["overlap"], self.layer.x[: self.layer.fluid], self.skeleton.x)

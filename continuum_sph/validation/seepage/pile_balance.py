@@ -1,0 +1,76 @@
+"""Water that passes under a sheet pile between two levels of open water: as much comes out as goes in.  SI."""
+
+import functools
+
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.scene.sections import Scene
+from porescale.common.evidence.validations import Measured, Validations
+from porescale.common.schema.sections import validate
+
+VALIDATIONS = Validations()
+
+GROUND, SIDE, UPSTREAM, DOWNSTREAM = 1.0, 1.5, 1.9, 1.3  # m: depth of the ground; of each side; levels over its base
+FROM, UNTIL = 10.0, 80.0  # s: as much passes as half of the pores hold
+
+
+def scene_of(rows: int) -> Scene:
+    """A scene of ground of ``rows`` that is held, with a sheet pile through half of it."""
+    spacing = GROUND / rows
+    width = 2.0 * SIDE
+    outline = [[0.0, 0.0], [width, 0.0], [width, GROUND], [0.0, GROUND]]
+    pool = {"bottom": GROUND, "left": 0.0}
+    return validate(
+        Scene,
+        {
+            "tank": {"width": width, "height": 2.4, "lid": False},
+            "numerics": {"spacing": spacing, "artificial_viscosity": 0.1, "tension": "cut"},
+            "time": {"end": UNTIL},
+            "output": {"snapshot_interval": UNTIL, "series_interval": UNTIL},
+            "soil": {
+                "stiffness": 3.71e5, "held": True, "permeability": 0.03, "porosity": 0.4,
+                "body": [{"outline": outline}],
+            },
+            "pile": {"x": SIDE, "tip": 0.5 * GROUND},
+            "water": {
+                "sound_speed": 81.0,
+                "column": [{"width": SIDE, "height": UPSTREAM}, {"left": SIDE, "width": SIDE, "height": DOWNSTREAM}],
+            },
+            "reservoir": [
+                pool | {"right": SIDE, "level": UPSTREAM, "name": "upstream"},
+                pool | {"left": SIDE + spacing, "right": width, "level": DOWNSTREAM, "name": "downstream"},
+            ],
+        },
+    )  # fmt: skip
+
+
+def passed(rows: int, until: float = UNTIL) -> tuple[float, float]:
+    """Mass (kg/m) that has gone into the ground on one side and come out on the other, from `FROM` to ``until`` (s)."""
+    model = Simulation(scene_of(rows))
+    supply = model.flow.supply
+    found = []
+    for time in (FROM, until):
+        while model.time < time:
+            model.advance(1)
+        into, out = (supply.passed(pool) for pool in supply.reservoirs)
+        found.append((into, -out))
+    return found[1][0] - found[0][0], found[1][1] - found[0][1]
+
+
+@functools.cache
+def kept(rows: int, until: float = UNTIL) -> float:
+    """Share of what goes into the ground that does not come out."""
+    into, out = passed(rows, until)
+    return 1.0 - out / into
+
+
+@VALIDATIONS.row(
+    "continuum.in_and_out_under_a_pile",
+    source="exact: as much water comes out of full ground that is held as goes into it",
+    because="asked, of what passes; water takes its excess of volume up on half a smoothing length, and what is made "
+    "anew on that way, with what is let be, 0.005, is the excess that stays: 0.6 to 1 % (10 to 20 rows)",
+    tolerance=0.02,
+    slow=True,
+)
+def row() -> Measured:
+    """Share of what passes under a sheet pile in 70 s that the ground keeps, 10 particles over its depth."""
+    return Measured.absolute(0.0, kept(10))
