@@ -122,6 +122,7 @@ def room_before(walls: Walls, x: Floats, spacing: float, h: float) -> Floats:
     it is to 1 %."""
 
     def share(distance: Floats | float) -> Floats:
+        """Share of the kernel on this side of an edge at a ``distance``, m."""
         values: Floats = np.interp(np.asarray(distance) / h, *_rows(spacing / h), left=0.0, right=1.0)
         return values
 
