@@ -5,8 +5,9 @@ A row names a ``column`` (with its unit) and where to read it:
 at : "end", "max", "min", a time in s (interpolated), or a table with first_below, first_above or last_above and a
     value: the time in s at which the column falls or rises to it for the first time, or is above it for the last; as
     a share of where it goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value);
-    with quantile, what that share of the rows does not exceed; with mean_from, max_from, rms_from, period_from the
-    mean, the largest value, the rms about the mean, the mean period (s) about the mean from a time on.
+    with quantile, what that share of the rows does not exceed; with mean_from, max_from, rms_from, period_from,
+    change_from the mean, the largest value, the rms about the mean, the mean period (s) about the mean, the last value
+    less the first from a time on.
 minus : another column to take away;  where : {column: value} of the rows to look at, at the table's last time.
 """
 
@@ -91,6 +92,7 @@ LATE: dict[str, Callable[[NDArray[Any], NDArray[Any]], float]] = {
     "max_from": lambda time, values: float(values.max()),
     "rms_from": lambda time, values: float(values.std()),
     "period_from": _period,
+    "change_from": lambda time, values: float(values[-1] - values[0]),
 }
 """What is taken of the rows from a time on, by key."""
 

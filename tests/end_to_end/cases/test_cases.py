@@ -134,6 +134,7 @@ def test_numbers_are_read_from_the_series_as_stated():
     assert at({"first_below": 1.0}) == np.inf
     assert at({"quantile": 0.5}) == 5.0  # half-way between 4 and 6
     assert at({"max_from": 1.0}) == 6.0
+    assert at({"change_from": 1.0}) == -2.0
     assert at({"period_from": 0.0}) == np.inf  # it does not swing
     columns |= {"z (m)": np.array([-1.0, 1.0, -1.0, 1.0])}  # rises through its mean at 0.5 s and 2.5 s
     assert measured(columns, {"column": "z (m)", "at": {"period_from": 0.0}}) == 2.0
