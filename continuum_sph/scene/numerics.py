@@ -16,6 +16,7 @@ class NumericsSection(Section):
     field, or every difference ("plain");  noise_floor : over the pressure under the deepest water; noise below it
     diffuses the more slowly the weaker it is, with 0 all of it at the speed of sound, and water at rest creeps;
     density_filter : steps between filters, 0 never.
+    smoothing_ratio : of water among grains at least 1.05/√n where pores start empty, to reach the next row there.
     xsph moves particles with the smoothed velocity but continuity with their own: volume is lost where they differ.
     """
 

@@ -10,13 +10,14 @@ from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, water_counts
 from continuum_sph.builders.parts.sheet_pile import LEAST, LEAST_BARE, OPEN, given_heads, ground_at, resolved
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
-from continuum_sph.builders.parts.water import wall_layers, water_state
+from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
 from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_rate, report_watched
 from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.step import SHARE
+from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import RATIO
 from porescale.common.api.report import Report, report_output
 from porescale.common.core.constants import GRAVITY
@@ -30,7 +31,6 @@ KIND = "soil and its water"
 """Of what runs are made, under which their times are kept; "soil and water" were estimates without open water."""
 BYTES = 770  # per particle of water and walls, lists included: 3 200 of a pond
 HELD_BYTES, MOVING_BYTES = 1250, 1900  # per particle of soil, its list of the water about it included
-REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
 LEAST_BELOW = 1.0  # rows below a pile: discharges are within 1 % with it, 4 % low with 0.6
 STEPS = 400_000  # for which water at rest over ground keeps its level with smoothing lengths of less than
 STANDS = 1.35  # spacings, with which it does for two million
@@ -50,7 +50,7 @@ def seepage_report(scene: Scene) -> Report:
     soil, _ = soil_particles(scene)
     water, waiting = water_counts(scene, soil)
     out = water_report(scene, water)
-    law, state = pore_law(scene), water_state(scene)
+    law, state = pore_law(scene, soil), water_state(scene)
     out.heading("soil")
     report_watched(scene, out)
     out.row("soil particles", len(soil))
@@ -59,13 +59,20 @@ def seepage_report(scene: Scene) -> Report:
     step = min(step_limits(scene, law))  # of air beside water, too
     _, most = section.permeabilities
     drag = most / (section.porosity * GRAVITY)
+    if law.smoothing.length > water_law(scene).smoothing.length:
+        out.row(
+            "smoothing length of the water",
+            law.smoothing.length,
+            "m",
+            "to reach the next row in pores that start empty",
+        )
     out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
-        step = min(step, moving(scene, out, stiff))
+        step = min(step, moving(scene, out, law, stiff))
     air = len(dry_pores(scene.water.column, soil)) if scene.air else 0
     if scene.air:
         air_report(out, scene, law, air)
-    cost(scene, out, step, Counts(len(soil), water + air, waiting))
+    cost(scene, out, law, step, Counts(len(soil), water + air, waiting))
     report_rate(out, section, wet=True)
     report_origin(out, section.origin)
     if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < STANDS:
@@ -81,7 +88,7 @@ def seepage_report(scene: Scene) -> Report:
     if scene.pile:
         pile_report(scene, out)
     if scene.reservoir:
-        levels(scene, out, wetted=not section.saturated and len(dry_pores(scene.water.column, soil)) > 0)
+        levels(scene, out)
     if scene.face:
         faces(scene, out, soil)
     return out
@@ -95,10 +102,10 @@ class Counts(NamedTuple):
     waiting: int
 
 
-def cost(scene: Scene, out: Report, step: float, there: Counts) -> None:
+def cost(scene: Scene, out: Report, law: Law, step: float, there: Counts) -> None:
     """Rows on how many steps of ``step`` (s) a run has, the memory and the time that it takes, and what it writes."""
     steps, fluid = scene.time.end / step, there.fluid + there.waiting
-    walls = wall_count(scene, wall_layers(pore_law(scene), scene.numerics.spacing))
+    walls = wall_count(scene, wall_layers(law, scene.numerics.spacing))
     out.heading("steps")
     out.row("longest step of water and soil", step, "s")
     out.row("steps", round(steps))
@@ -114,21 +121,22 @@ def cost(scene: Scene, out: Report, step: float, there: Counts) -> None:
     report_output(out, scene.time.end, scene.output, round(steps), size)
 
 
-def moving(scene: Scene, out: Report, stiff: float) -> float:
-    """Rows on soil that moves with water of a stiffness ρ c² (Pa), ``stiff``; the longest step (s) for their sound."""
-    section, h = soil_section(scene), pore_law(scene).smoothing.length
+def moving(scene: Scene, out: Report, law: Law, stiff: float) -> float:
+    """Rows on soil that moves with water of a ``law`` and a stiffness ρ c² (Pa), ``stiff``; the longest step (s) for
+    their sound."""
+    section, ground = soil_section(scene), soil_law(scene)
     porosity, density, modulus = section.porosity, scene.water.density, largest_modulus(scene)
     sound = (modulus / section.density) ** 0.5
     whole = porosity * density + section.density
     out.row("modulus of a column at the floor", modulus, "Pa")
-    out.row("longest step for its sound", min(soil_law(scene).limits(0.0, sound / h, float("inf"))), "s")
+    out.row("longest step for its sound", min(ground.limits(0.0, sound / ground.smoothing.length, float("inf"))), "s")
     report_stiffness(out, stiff, porosity * modulus, density)
     out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
     least, _ = section.permeabilities
     spread = least * modulus / (density * GRAVITY)
     out.row("consolidation coefficient", spread, "m2/s")
     out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
-    step = float(SHARE * h / ((modulus + stiff / porosity) / whole) ** 0.5)
+    step = float(SHARE * law.smoothing.length / ((modulus + stiff / porosity) / whole) ** 0.5)
     out.row("longest step for sound in both together", step, "s")
     return step
 
@@ -207,13 +215,10 @@ def bare_exit(scene: Scene) -> str:
     return "" if covered or given[lower] is not None or heads[0] == heads[1] else ("left", "right")[lower]
 
 
-def levels(scene: Scene, out: Report, *, wetted: bool) -> None:
-    """Rows on prescribed levels, and warnings about what keeps water from moving into soil as it should.
-
-    wetted : there are pores without water.
-    """
+def levels(scene: Scene, out: Report) -> None:
+    """Rows on prescribed levels, and warnings about what keeps water from moving into soil as it should."""
     numerics, section = scene.numerics, soil_section(scene)
-    spacing, porosity = numerics.spacing, section.porosity
+    spacing = numerics.spacing
     out.heading("prescribed levels")
     for name, it in zip(names_of(scene.reservoir, "reservoir"), scene.reservoir, strict=True):
         breadth = (it.right - it.left) / spacing
@@ -228,13 +233,6 @@ def levels(scene: Scene, out: Report, *, wetted: bool) -> None:
                 f"the strip of {name} lies closer than {APART:g} spacings to the ground, and its level is disturbed: "
                 f"leave {APART * spacing:.3g} m between them, or lower numerics.spacing"
             )
-    reach = numerics.smoothing_ratio * porosity**0.5
-    out.row("smoothing length over distances in pores", reach, "", f"at least {REACH:g}")
-    if reach < REACH and wetted:
-        out.warn(
-            f"particles of water part by 1/sqrt(n) where they enter soil: kernels reach {reach:.2g} of their distance, "
-            f"fronts are up to 10 % late; numerics.smoothing_ratio {REACH / porosity**0.5:.2g} mends it"
-        )
     if numerics.shifting > 0.0:
         out.warn(
             "shifting goes by the fastest water anywhere, and crowds what rests beside it: levels and discharges are "

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.parts.pore_water import pore_law
+from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
@@ -61,7 +62,8 @@ def test_flow_across_two_pieces_has_the_harmonic_mean():
 def resisted(rows):
     """k over K of water in each of ``rows`` of ground, the upper half with RATIO: it meets the mean of what its
     partners resist, by the kernel."""
-    law = pore_law(scene(ALONG)).smoothing
+    given = scene(ALONG)
+    law = pore_law(given, soil_particles(given)[0]).smoothing
     reach, h = np.arange(-5, 6), law.length / SPACING
     weight = np.array([sum(kernel_value(law.kind, np.hypot(i, j) / h, h) for i in reach) for j in reach])
     apart = np.subtract.outer(np.arange(rows), np.arange(rows))

@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.parts.instruments import MeasuredWater, discharge
+from continuum_sph.builders.parts.pore_water import REACH, pore_law
+from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.reservoir import ReservoirSection
 from continuum_sph.scene.sections import Scene
+from continuum_sph.water.smoothing import RATIO
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import square_lattice
@@ -91,13 +94,28 @@ def test_reservoirs_that_cannot_be_are_refused():
         scene(reservoir=[good], soil=None)
 
 
-def test_kernels_too_short_for_pores_and_shifting_are_warned_of():
-    def said(numerics):
-        warnings = seepage_report(scene(numerics={"spacing": 0.02} | numerics)).warnings
-        return [any(word in text for text in warnings) for word in ("kernels reach", "fastest water")]
+def test_kernels_reach_the_next_row_where_pores_start_empty():
+    def length(ratio=RATIO, **changes):
+        given = scene(numerics={"spacing": 0.02, "smoothing_ratio": ratio}, **changes)
+        return pore_law(given, soil_particles(given)[0]).smoothing.length / 0.02
 
-    assert said({"shifting": 1.0}) == [True, True]
-    assert said({"smoothing_ratio": 2.0}) == [False, False]
+    assert length() == pytest.approx(REACH / scene().soil.porosity ** 0.5)
+    body = [{"outline": [[0.3, 0], [0.5, 0], [0.5, 0.25], [0.3, 0.25]]}]
+    full = {"stiffness": 2e5, "elastic": True, "permeability": 0.05, "saturated": True, "body": body}
+    assert length(2.0) == pytest.approx(2.0)
+    assert length(soil=full) == pytest.approx(RATIO)
+    assert length(air={"density": 20.0, "pressure": 5000.0}, reservoir=[]) == pytest.approx(RATIO)  # which fills them
+    rows = [row.name for group in seepage_report(scene()).groups.values() for row in group]
+    assert "smoothing length of the water" in rows
+
+
+def test_shifting_beside_reservoirs_is_warned_of():
+    def said(**numerics):
+        warnings = seepage_report(scene(numerics={"spacing": 0.02} | numerics)).warnings
+        return any("fastest water" in text for text in warnings)
+
+    assert said(shifting=1.0)
+    assert not said()
 
 
 def test_water_that_is_to_rest_over_ground_for_long_is_warned_of():
