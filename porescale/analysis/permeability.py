@@ -39,6 +39,8 @@ STEADY = 2e-5
 """Relative change of the flux over the last fifth of the steps, below which it is steady."""
 FIRST, MOST = 500, 200_000
 """Steps before the flux is looked at for the first time, and at most: a sealed bed never gets steady."""
+SHORTEST = 4.0
+"""Diameters of the grains that a window has along the flow, which is no whole period: its ends disturb one each."""
 KOZENY = 5.0
 
 
@@ -139,10 +141,10 @@ def measure(
         raise InputError(Fault("permeability.window", None, "holds no grain", repair="move it into the bed"))
     across = 2 * float(size.mean())
     margin = 0 if whole[0] else math.ceil(across)
-    if not whole[0] and cells[0] < 4 * across:
+    if not whole[0] and cells[0] < SHORTEST * across:
         problem = f"is {cells[0] / across:.2g} diameters long"
-        raise InputError(Fault("permeability.window", None, problem, allowed=">= 4 diameters along the flow",
-                               repair="make it longer"))  # fmt: skip
+        allowed = f">= {SHORTEST:g} diameters along the flow"
+        raise InputError(Fault("permeability.window", None, problem, allowed=allowed, repair="make it longer"))
     length = cells[0]
     if not whole[0]:
         at = np.concatenate([at, np.stack([2 * length - at[:, 0], at[:, 1]], axis=1)])

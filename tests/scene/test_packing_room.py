@@ -2,8 +2,9 @@
 
 import pytest
 
-from porescale.builders.build import build
+from porescale.builders.build import build, load_scene
 from porescale.builders.derive import derive
+from tests.reference.folders import CASES
 from tests.reference.scenes import dry, refusals, table
 
 SIZES = ("diameter", "packing_fraction")
@@ -45,3 +46,19 @@ def test_head_room_that_a_large_grain_takes_is_said_of_its_diameter():
     assert line.startswith("grains.packing.diameter = 0.003 m: is placed up to 0.01343 m before it settles")
     (line,) = refusals(lambda: derive(packed(diameter=0.0009, height=0.0025, bottom=0.0095)))
     assert line.startswith("grains.packing.height = 0.0025 m: is placed up to 0.01273 m before it settles")
+
+
+@pytest.mark.parametrize(
+    ("setting", "said"),
+    [
+        ("permeability.window.bottom='2.5 cm'", "no grain stands in it"),
+        ("permeability.window.height='4 mm'", "hydraulic diameters long"),
+        ("permeability.window.height='5 mm'", ""),  # 4.2 of λ d
+        ("permeability.direction='x'", ""),
+    ],
+)
+def test_a_window_in_which_nothing_is_measured_is_warned_of(setting, said):
+    more = ["permeability.window.height='4 mm'"] if "bottom='2.5" in setting else []
+    warnings = [it for it in derive(load_scene(CASES / "permeameter", settings=[*more, setting])).warnings
+                if it.startswith("permeability.window")]  # fmt: skip
+    assert [said in it for it in warnings] == [True] * bool(said)

@@ -9,6 +9,7 @@ from porescale import Scene
 from porescale.builders.build import build
 from porescale.builders.derive import derive
 from porescale.builders.initial.rock import rock_discs
+from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.prepare.rock import rock as made_by_hand
@@ -125,7 +126,8 @@ def test_cracks_lie_along_the_common_side():
     ],
 )
 def test_bonds_between_nobody_are_refused(bonds, line):
-    assert refusals(lambda: build(wall(bonds=bonds)))[0].startswith(line)
+    for made in (build, report):  # check refuses what run would
+        assert refusals(lambda made=made: made(wall(bonds=bonds)))[0].startswith(line)
 
 
 ROCK: dict[str, Any] = {

@@ -1,4 +1,5 @@
-"""Whether what is placed by hand stands in a grain of the packing, which is known once the packing is made."""
+"""What is known once grains are placed: whether one of a packing stands where something was placed by hand, and whether
+there is something to bond."""
 
 import numpy as np
 
@@ -6,6 +7,9 @@ from porescale.builders.derive import Derived
 from porescale.builders.initial.grains import frames_of, grains_of
 from porescale.builders.initial.obstacles import obstacles_of
 from porescale.builders.initial.placed import placed
+from porescale.builders.parts.bonds import BondsPart
+from porescale.builders.stepper import Clock
+from porescale.builders.system import System
 from porescale.scene.scene import Scene
 
 
@@ -30,3 +34,11 @@ def require_clear_packing(scene: Scene, derived: Derived) -> None:
     if any(np.all(one < corner + size + beside) and np.all(other > corner - beside)
            for one, other in zip(low, high, strict=True)):  # fmt: skip
         grains_of(scene, derived, frames)
+
+
+def require_first_bonds(scene: Scene, derived: Derived) -> None:
+    """InputError, as of the run, where bonds at time 0 have nothing that touches, or bodies that there are not."""
+    if any(it.at == 0.0 for it in scene.bonds):
+        made = System(scene, derived, Clock(derived.model_step), frames=frames_of(scene, derived))
+        made.grains, made.recorded = grains_of(scene, derived, made.frames)
+        BondsPart(made)

@@ -1,8 +1,12 @@
 """The grains of a packing fit its rectangle; one that is pressed together fills the box, and its friction has springs
 to act on."""
 
+import numpy as np
+
+from porescale.analysis.permeability import SHORTEST
 from porescale.builders.initial.contact_laws import law_class, merged
 from porescale.builders.initial.packing import drawn_radii, radii_of
+from porescale.builders.initial.placed import placed
 from porescale.common.core.errors import Fault
 from porescale.common.neighbors.placement import DENSEST
 from porescale.dem.prepare.settle import Pile
@@ -74,3 +78,38 @@ def check_room(packing: Packing, count: int, faults: list[Fault]) -> bool:
         allowed = f"<= {room * packing.diameter / largest:.4g}"
         faults.append(Fault("grains.packing.diameter", packing.diameter, problem, "m", allowed, repair))
     return False
+
+
+def beside_the_bed(scene: Scene) -> list[str]:
+    """Warnings of a window of [permeability] in which nothing is measured: no grain or held disc stands in it at the
+    start, or it is too short along the flow."""
+    if scene.permeability is None:
+        return []
+    packing = scene.grains.packing if scene.grains else None
+    window = scene.permeability.window or packing
+    if window is None:
+        return []
+    _, x, r = placed(scene)
+    low = np.array((window.left, window.bottom))
+    size = np.array((window.width, window.height))
+    inside = np.all((x > low) & (x < low + size), axis=1)
+    diameters = 2.0 * r[inside]
+    if packing is not None:
+        corner, wide = np.array((packing.left, packing.bottom)), np.array((packing.width, packing.height))
+        if np.all((corner < low + size) & (low < corner + wide)):
+            diameters = np.append(diameters, packing.diameter)
+    if not len(diameters):
+        return [
+            "permeability.window: no grain stands in it at the start: unless some come there, permeability.csv stays "
+            "empty; move it into the bed"
+        ]
+    axis = 0 if scene.permeability.direction == "x" else 1
+    whole = scene.domain.periodic[axis] and size[axis] >= (scene.domain.width, scene.domain.height)[axis] * (1.0 - SAME)
+    ratio = scene.grains.hydraulic_radius_ratio or 1.0 if scene.grains else 1.0
+    across = float(size[axis]) / (ratio * float(diameters.mean()))
+    if whole or across >= SHORTEST:
+        return []
+    return [
+        f"permeability.window: it is {across:.2g} hydraulic diameters long along the flow, and nothing is measured in "
+        f"less than {SHORTEST:g}: make it longer"
+    ]
