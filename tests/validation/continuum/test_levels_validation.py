@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.seepage import Resistance, Supply, reservoir
+from continuum_sph.seepage import Resistance, Supply, pores, reservoir
 from continuum_sph.validation.seepage import dam, infiltration
 from continuum_sph.validation.seepage.dam import DAM, STATIONS, SURFACE, Dam
 from continuum_sph.validation.seepage.infiltration import DRAWN
@@ -68,8 +68,9 @@ def test_water_enters_soil_too_fast_under_the_printed_drag(monkeypatch):
 
 
 @pytest.mark.slow
-def test_kernels_that_miss_the_next_row_in_pores_hold_the_front_back():
-    # Rows of water 1/n spacings apart and kernels that end at 2.6 spacings
+def test_water_that_keeps_its_excess_of_volume_holds_the_front_back(monkeypatch):
+    # Rows of water 1/n spacings apart, and kernels that end at 2.6 spacings: 1.6 % late where it takes the excess up.
+    monkeypatch.setattr(pores, "PACE", 0.0)
     (found,) = infiltration.fronts(replace(DRAWN, rows=20, ratio=1.3), (0.3,))
     assert abs(found - 1.0) > tolerance("continuum.imbibition")
 
