@@ -25,7 +25,7 @@ from continuum_sph.seepage.pressure_face import PressureFace, follow, prescribe_
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.sheet_pile import CutPairList
 from continuum_sph.seepage.skeleton import Skeleton
-from continuum_sph.seepage.volume_excess import PACE, Walls, excess_about_water, fill_about_soil, room_before, take_up
+from continuum_sph.seepage.volume_excess import PACE, Edges, excess_about_water, fill_about_soil, room_before, take_up
 from continuum_sph.water.step import Flow
 from porescale.common.compiled.simd import LANES
 from porescale.common.core.types import Floats
@@ -99,7 +99,7 @@ class PoreFlow(Flow):
         """Overwrite ``excess`` with that of now."""
         layer, soil, law, rows = self.layer, self.skeleton, self.law, self.overlap.rows
         pile = (self.pairs.at, self.pairs.bottom, self.pairs.half) if isinstance(self.pairs, CutPairList) else None
-        room = room_before(Walls(self.lower, self.upper, pile), soil.x, law.spacing, law.smoothing.length)
+        room = room_before(Edges(self.lower, self.upper, pile), soil.x, law.spacing, law.smoothing.length)
         fill_about_soil(layer.fluid, *rows, layer.record, layer.material, room, self.full)
         excess_about_water(layer.fluid, *rows, soil.burden, layer.material, self.full, self.excess)
         self.corrected = bool(self.excess.any())

@@ -78,7 +78,7 @@ def take_up(fluid, mass, record, pores, excess, pace, rate, power):
     mass (fluid…,) kg/m;  record: see `water.state`;  pores: see `mixture`.
     """
     for i in prange(fluid):
-        if excess[i] > 0.0:
+        if excess[i] > 0.0 and mass[i] > 0.0:  # one that was taken out since is not there
             slip = np.sqrt(pores[SLIP_X, i] * pores[SLIP_X, i] + pores[SLIP_Y, i] * pores[SLIP_Y, i])
             share = excess[i] * pace * slip
             rho = mass[i] / (record[i, VOLUME] * pores[POROSITY, i])
@@ -107,7 +107,7 @@ def _rows(pitch: float) -> tuple[Floats, Floats]:
     return at, across / across[-1]
 
 
-class Walls(NamedTuple):
+class Edges(NamedTuple):
     """lower, upper (2,) m: of the tank, infinite where it has no wall;  pile: where one stands, its bottom and half its
     thickness, m, or None."""
 
@@ -116,10 +116,10 @@ class Walls(NamedTuple):
     pile: tuple[float, float, float] | None = None
 
 
-def room_before(walls: Walls, x: Floats, spacing: float, h: float) -> Floats:
-    """Share (s,) of the overlap's kernel of smoothing length ``h`` at ``x`` (s, 2) that lies before ``walls`` and is
-    seen past a pile, in rows of a ``spacing``, all m: as if the kernel were a product of one along and one across, as
-    it is to 1 %."""
+def room_before(edges: Edges, x: Floats, spacing: float, h: float) -> Floats:
+    """Share (s,) of the overlap's kernel of smoothing length ``h`` at ``x`` (s, 2) that lies before ``edges`` and is
+    seen past a pile, in rows of a ``spacing``, all m: as if the kernel were a product of one along and one across; it
+    is to 1 %."""
 
     def share(distance: Floats | float) -> Floats:
         """Share of the kernel on this side of an edge at a ``distance``, m."""
@@ -128,9 +128,9 @@ def room_before(walls: Walls, x: Floats, spacing: float, h: float) -> Floats:
 
     room = np.ones(len(x))
     for axis in (0, 1):
-        room *= share(walls.upper[axis] - x[:, axis]) - share(walls.lower[axis] - x[:, axis])
-    if walls.pile is not None:
-        at, bottom, half = walls.pile
+        room *= share(edges.upper[axis] - x[:, axis]) - share(edges.lower[axis] - x[:, axis])
+    if edges.pile is not None:
+        at, bottom, half = edges.pile
         left, right = share(at - half - x[:, 0]), share(at + half - x[:, 0])
         hidden = np.where(x[:, 1] < bottom, right - left, np.where(x[:, 0] < at, 1.0 - left, right))
         room -= room * hidden * (1.0 - share(bottom - x[:, 1]))
