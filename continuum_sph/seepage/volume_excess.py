@@ -14,7 +14,8 @@ the mean of it about water.  The density of water that moves through soil at w t
     dρ_i/dt = ρ_i e_i 2 |w_i|/h                                                                              (added)
 
 on half a smoothing length, and pressure drives the particles apart.  Where pores are not full, at surfaces and fronts,
-c is negative and nothing is done;  nor is to air, and to water at rest.
+c is negative and nothing is done;  nor is to air, to water at rest, and to water less than nine tenths of whose kernel
+is in soil, as a river over it.
 """
 
 import functools
@@ -23,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_sph.seepage.mixture import POROSITY, SLIP_X, SLIP_Y
+from continuum_sph.seepage.mixture import POROSITY, ROOM, SLIP_X, SLIP_Y
 from continuum_sph.water.smoothing import SUPPORT
 from continuum_sph.water.state import DIFFUSIVE, VOLUME, P
 from porescale.common.compiled.jit import parallel_kernel, prange
@@ -34,6 +35,8 @@ PACE = 2.0
 ground with 0, 0.9 % with 2 (12 rows, 12 to 60 s)."""
 LET = 0.005
 """Excess that is no sign of an error: sums over a square lattice are up to 1.0016."""
+INSIDE = 0.9
+"""Share of the kernel in soil from which on water counts as in it: what runs along its surface is not to part."""
 BULK = 7  # column of the soil's volume with its pores
 STEPS = 200  # of the integrals of a kernel, which are right to 1e-5 with them
 
@@ -55,19 +58,22 @@ def fill_about_soil(fluid, near, other, weight, record, material, room, full):
 
 
 @parallel_kernel
-def excess_about_water(fluid, near, soil, weight, burden, material, full, excess):
+def excess_about_water(fluid, near, soil, weight, burden, material, pores, full, excess):
     """Overwrites ``excess`` (fluid,): e of particles, of air 0;  full (s,): of `fill_about_soil`.
 
     near, soil, weight: rows of the overlap, soil numbered from ``fluid`` on;  burden (s, 8): see `skeleton.show_soil`;
-    material (fluid…,): 0 is water.
+    material (fluid…,): 0 is water;  pores: see `mixture`.
     """
     for i in prange(fluid):
         total = -LET
+        around = 0.0
         if material[i] == 0:
             for k in range(near[i], near[i + 1]):
                 s = soil[k] - fluid
-                total += burden[s, BULK] * weight[k] * full[s]
-        excess[i] = max(0.0, total)
+                share = burden[s, BULK] * weight[k]
+                around += share
+                total += share * full[s]
+        excess[i] = max(0.0, total) if around > INSIDE * pores[ROOM, i] else 0.0
 
 
 @parallel_kernel

@@ -9,6 +9,7 @@ from continuum_sph.seepage.mixture import LINES, POROSITY, SLIP_X, SLIP_Y
 from continuum_sph.seepage.overlap import Overlap, overlap_weights
 from continuum_sph.seepage.volume_excess import (
     BULK,
+    INSIDE,
     LET,
     PACE,
     Edges,
@@ -31,6 +32,15 @@ def lattice(columns: int = 10, spacing: float = 0.1) -> np.ndarray:
     return (np.column_stack((i.ravel(), j.ravel())) + 0.5) * spacing
 
 
+def test_what_runs_along_the_surface_of_soil_is_left_alone():
+    x, room, water = lattice(), np.ones(100), np.zeros(100, np.int64)
+    bulk = np.where(x[:, 1] < 0.5, 0.01, 0.0)  # no soil above
+    excess = found(x, np.full(100, 0.0104), water, x, bulk, room)
+    deep = (x[:, 1] > 0.2) & (x[:, 1] < 0.3)  # the box is periodic, and the kernel reaches 0.26
+    assert (excess[deep] > 0.0).all()
+    assert not excess[x[:, 1] > 0.4].any()
+
+
 def found(x, volume, material, soil_x, bulk, room):
     """Excess of the kernels in a periodic box."""
     n, s = len(x), len(soil_x)
@@ -40,9 +50,9 @@ def found(x, volume, material, soil_x, bulk, room):
     overlap_weights(start, partner, overlap.x, weight, H, 1.0, 1.0)
     record, burden = np.zeros((n, 8)), np.zeros((s, 8))
     record[:, VOLUME], burden[:, BULK] = volume, bulk
-    full, excess = np.zeros(s), np.full(n, np.nan)
+    full, excess, pores = np.zeros(s), np.full(n, np.nan), np.ones((LINES, n))
     fill_about_soil(n, start, partner, weight, record, material, room, full)
-    excess_about_water(n, start, partner, weight, burden, material, full, excess)
+    excess_about_water(n, start, partner, weight, burden, material, pores, full, excess)
     return excess
 
 
@@ -51,7 +61,7 @@ def test_the_excess_is_that_of_the_dense_sums():
     x, soil_x = (lattice() + rng.uniform(-0.03, 0.03, (100, 2)) for _ in range(2))
     volume, bulk, room = rng.uniform(0.009, 0.012, 100), rng.uniform(0.009, 0.011, 100), rng.uniform(0.9, 1.0, 100)
     material = (rng.uniform(size=100) < 0.1).astype(np.int64)
-    expected = slow.excess(x, volume, material == 0, soil_x, bulk, room, H, PERIOD, LET)
+    expected = slow.excess(x, volume, material == 0, soil_x, bulk, room, H, PERIOD, LET, INSIDE)
     assert 20 < (expected > 0.0).sum() < 95
     # sums of some 25 terms of one sign, twice, less 1
     np.testing.assert_allclose(found(x, volume, material, soil_x, bulk, room), expected, atol=100 * eps)

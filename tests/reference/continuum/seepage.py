@@ -71,10 +71,10 @@ def drag(
     return v, soil_new
 
 
-def excess(x, volume, water, soil_x, bulk, room, h, period, let):
+def excess(x, volume, water, soil_x, bulk, room, h, period, let, inside):
     """e (n,) of water with ``volume`` (n,) where ``water`` (n,) is True: how much more than full of it the room about
     the soil near it is, less ``let``, 0 at least."""
     d = separation(x, soil_x, period)
     near = spline(np.hypot(d[..., 0], d[..., 1]), h)
     full = (near * np.where(water, volume, 0.0)[:, None]).sum(axis=0) / room - 1.0
-    return np.where(water, np.maximum(0.0, near @ (bulk * full) - let), 0.0)
+    return np.where(water & (near @ bulk > inside), np.maximum(0.0, near @ (bulk * full) - let), 0.0)
