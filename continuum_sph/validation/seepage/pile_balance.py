@@ -67,7 +67,7 @@ def kept(rows: int, until: float = UNTIL) -> float:
     "continuum.in_and_out_under_a_pile",
     source="exact: as much water comes out of full ground that is held as goes into it",
     because="asked, of what passes; water takes its excess of volume up on half a smoothing length, and what is made "
-    "anew on that way, with what is let be, 0.005, is the excess that stays: 0.6 to 1 % (10 to 20 rows)",
+    "anew on that way, with what is let be, 0.005, is the excess that stays: 1 % (10 rows)",
     tolerance=0.02,
     slow=True,
 )
