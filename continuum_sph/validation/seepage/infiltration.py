@@ -162,9 +162,10 @@ LEAST_STEP = 1e-7  # s: a thousandth of those that a run has
 
 
 def fronts(given: Imbibition = DRAWN, times: tuple[float, ...] = DRAWN_TIMES) -> list[float]:
-    """Way of the wetting front over √(2 k h0 t/n) at rising ``times`` (s), nan once the run has blown up: columns behind
-    the face are uneven in the end, and water that gets past it may collide (20 rows: after 0.41 s)."""
-    both, found = given.build(), []
+    """Way of the wetting front over √(2 k h0 t/n) at rising ``times`` (s), nan once the run has blown up: columns
+    behind the face are uneven in the end, and water that gets past it may collide (20 rows: after 0.41 s)."""
+    both = given.build()
+    found: list[float] = []
     for time in times:
         while both.time < time:
             if both.next_step < LEAST_STEP:
