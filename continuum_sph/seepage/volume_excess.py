@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_sph.seepage.mixture import POROSITY, ROOM, SLIP_X, SLIP_Y
+from continuum_sph.seepage.mixture import LEAST_ROOM, POROSITY, ROOM, SLIP_X, SLIP_Y
 from continuum_sph.water.smoothing import SUPPORT
 from continuum_sph.water.state import DIFFUSIVE, VOLUME, P
 from porescale.common.compiled.jit import parallel_kernel, prange
@@ -140,4 +140,4 @@ def room_before(edges: Edges, x: Floats, spacing: float, h: float) -> Floats:
         left, right = share(at - half - x[:, 0]), share(at + half - x[:, 0])
         hidden = np.where(x[:, 1] < bottom, right - left, np.where(x[:, 0] < at, 1.0 - left, right))
         room -= room * hidden * (1.0 - share(bottom - x[:, 1]))
-    return room
+    return np.maximum(LEAST_ROOM, room)  # of soil that has left the tank

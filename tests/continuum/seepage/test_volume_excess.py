@@ -5,7 +5,7 @@ import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.mixture import LINES, POROSITY, SLIP_X, SLIP_Y
+from continuum_sph.seepage.mixture import LEAST_ROOM, LINES, POROSITY, SLIP_X, SLIP_Y
 from continuum_sph.seepage.overlap import Overlap, overlap_weights
 from continuum_sph.seepage.volume_excess import (
     BULK,
@@ -126,6 +126,11 @@ def test_no_wall_is_all_room():
     x = np.array([[0.0, 0.0], [-SUPPORT, 3.0]])
     none = Edges(np.full(2, -np.inf), np.full(2, np.inf))
     np.testing.assert_array_equal(room_before(none, x, 1.0, 1.375), 1.0)
+
+
+def test_soil_that_has_left_the_tank_has_some_room_too():
+    edges = Edges(np.zeros(2), np.array([20.0, 40.0]))
+    assert room_before(edges, np.array([[-9.0, 3.0]]), 1.0, 1.375)[0] == LEAST_ROOM
 
 
 def wetted(**changes: float) -> Simulation:
