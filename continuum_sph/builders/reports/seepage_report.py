@@ -60,12 +60,8 @@ def seepage_report(scene: Scene) -> Report:
     _, most = section.permeabilities
     drag = most / (section.porosity * GRAVITY)
     if law.smoothing.length > water_law(scene).smoothing.length:
-        out.row(
-            "smoothing length of the water",
-            law.smoothing.length,
-            "m",
-            "to reach the next row in pores that start empty",
-        )
+        note = "to reach the next row in pores that start empty"
+        out.row("smoothing length of the water", law.smoothing.length, "m", note)
     out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
         step = min(step, moving(scene, out, law, stiff))

@@ -229,15 +229,8 @@ def test_a_number_that_cannot_be_had_is_none(tmp_path):
     assert sweep_files.number(ended, {"column": "left (m)", "at": "end"}, TOY.table) == pytest.approx(np.exp(-1))
 
 
-SOUND = [
-    '"end"',
-    '"min"',
-    "0.5",
-    "{ max_from = 6 }",
-    "{ change_from = 0 }",
-    '{ first_below = 0.5, share_of = "fall" }',
-    "{ quantile = 0.9 }",
-]
+SOUND = ['"end"', '"min"', "0.5", "{ max_from = 6 }", "{ change_from = 0 }",
+         '{ first_below = 0.5, share_of = "fall" }', "{ quantile = 0.9 }"]  # fmt: skip
 TORN = ['"ends"', "nan", "true", "[1]", "{}", '{ max_from = "6" }', "{ max_from = 6, min_from = 2 }",
         "{ quantile = 9 }", '{ max_from = 6, share_of = "fall" }', '{ first_below = 1, share_of = "all" }']  # fmt: skip
 

@@ -1,5 +1,7 @@
 """Excess of the volume of water among grains: what it is, where there is none, and what becomes of it."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -32,15 +34,6 @@ def lattice(columns: int = 10, spacing: float = 0.1) -> np.ndarray:
     return (np.column_stack((i.ravel(), j.ravel())) + 0.5) * spacing
 
 
-def test_what_runs_along_the_surface_of_soil_is_left_alone():
-    x, room, water = lattice(), np.ones(100), np.zeros(100, np.int64)
-    bulk = np.where(x[:, 1] < 0.5, 0.01, 0.0)  # no soil above
-    excess = found(x, np.full(100, 0.0104), water, x, bulk, room)
-    deep = (x[:, 1] > 0.2) & (x[:, 1] < 0.3)  # the box is periodic, and the kernel reaches 0.26
-    assert (excess[deep] > 0.0).all()
-    assert not excess[x[:, 1] > 0.4].any()
-
-
 def found(x, volume, material, soil_x, bulk, room):
     """Excess of the kernels in a periodic box."""
     n, s = len(x), len(soil_x)
@@ -54,6 +47,15 @@ def found(x, volume, material, soil_x, bulk, room):
     fill_about_soil(n, start, partner, weight, record, material, room, full)
     excess_about_water(n, start, partner, weight, burden, material, pores, full, excess)
     return excess
+
+
+def test_what_runs_along_the_surface_of_soil_is_left_alone():
+    x, room, water = lattice(), np.ones(100), np.zeros(100, np.int64)
+    bulk = np.where(x[:, 1] < 0.5, 0.01, 0.0)  # no soil above
+    excess = found(x, np.full(100, 0.0104), water, x, bulk, room)
+    deep = (x[:, 1] > 0.2) & (x[:, 1] < 0.3)  # the box is periodic, and the kernel reaches 0.26
+    assert (excess[deep] > 0.0).all()
+    assert not excess[x[:, 1] > 0.4].any()
 
 
 def test_the_excess_is_that_of_the_dense_sums():
@@ -133,50 +135,32 @@ def test_soil_that_has_left_the_tank_has_some_room_too():
     assert room_before(edges, np.array([[-9.0, 3.0]]), 1.0, 1.375)[0] == LEAST_ROOM
 
 
-def wetted(**changes: float) -> Simulation:
-    """Water that sinks into dry ground that is held."""
-    outline = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.3], [0.0, 0.3]]
-    return Simulation(
-        validate(
-            Scene,
-            {
-                "tank": {"width": 0.4, "height": 0.8, "lid": False},
-                "numerics": {"spacing": 0.02, "tension": "cut", "artificial_viscosity": 0.1},
-                "time": {"end": 1.0},
-                "output": {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True},
-                "soil": {
-                    "stiffness": 2e6, "held": True, "permeability": 0.05, "body": [{"outline": outline}],
-                    "saturated": False,
-                },
-                "water": {"sound_speed": 40.0, "column": [{"width": 0.4, "height": 0.3, "bottom": 0.3}]},
-            },
-        )
-    )  # fmt: skip
+def held(depth: float, height: float, water: dict[str, Any], **more: Any) -> Simulation:
+    """Ground of a ``depth`` (m) that is held, in a tank 0.4 m wide and of a ``height`` (m), with a column of water."""
+    outline = [[0.0, 0.0], [0.4, 0.0], [0.4, depth], [0.0, depth]]
+    scene = {
+        "tank": {"width": 0.4, "height": height, "lid": False},
+        "numerics": {"spacing": 0.02},
+        "time": {"end": 1.0},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+        "soil": {"stiffness": 2e6, "held": True, "permeability": 0.05, "body": [{"outline": outline}]},
+        "water": {"column": [{"width": 0.4, "height": 0.3} | water]},
+    }
+    return Simulation(validate(Scene, scene | more))
+
+
+def wetted() -> Simulation:
+    """Water that sinks into dry ground."""
+    numerics = {"spacing": 0.02, "tension": "cut", "artificial_viscosity": 0.1}
+    return held(0.3, 0.8, {"bottom": 0.3}, numerics=numerics)
 
 
 def test_water_at_rest_in_ground_has_none_at_walls_either():
-    outline = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.2], [0.0, 0.2]]
-    model = Simulation(
-        validate(
-            Scene,
-            {
-                "tank": {"width": 0.4, "height": 0.5, "lid": False},
-                "numerics": {"spacing": 0.02},
-                "time": {"end": 1.0},
-                "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
-                "soil": {
-                    "stiffness": 2e6, "held": True, "permeability": 0.05, "body": [{"outline": outline}],
-                },
-                "pile": {"x": 0.2, "tip": 0.1},
-                "water": {"column": [{"width": 0.4, "height": 0.3}]},
-            },
-        )
-    )  # fmt: skip
+    model = held(0.2, 0.5, {}, pile={"x": 0.2, "tip": 0.1})
     model.advance(50)
     water = model.flow.water
     water.find_excess()
     assert not water.corrected
-    print(np.abs(water.full).max())
     assert np.abs(water.full).max() < 0.01  # a kernel that is no product: 1 % in corners
 
 
