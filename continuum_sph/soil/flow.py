@@ -22,7 +22,7 @@ from continuum_sph.soil.stress import Straining, deform
 from continuum_sph.soil.tension import repel_under_tension
 from continuum_sph.soil.walls import place_walls, update_walls
 from continuum_sph.water.bundles import Neighbours
-from continuum_sph.water.no_step import no_step
+from continuum_sph.water.no_step import LEAST, no_step
 from continuum_sph.water.rates import split_rows
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors import PairList
@@ -156,7 +156,7 @@ class SoilFlow:
         limits = self.law.limits(float(acceleration2) ** 0.5, self.sound_rate, self.limit)
         self.rule = int(np.argmin(limits))
         self.next_step = limits[self.rule]
-        if not 0.0 < self.next_step < np.inf:
+        if not LEAST * self.law.step_at_rest <= self.next_step < np.inf:
             raise no_step(
                 self.next_step, RULES[self.rule], soil.x, soil.acceleration, soil.density, self.step, self.time,
                 "lower numerics.courant, or raise soil.numerics.damping or soil.stiffness",

@@ -5,6 +5,10 @@ import numpy as np
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 
+LEAST = 1e-4
+"""Of the step that sound allows at rest: a flow whose next step is shorter is unstable.  Acceleration limits by
+√(h/|a|), so it asks for that where it is 10⁸ times what crosses h as sound does."""
+
 
 def no_step(seconds: float, rule: str, x: Floats, acceleration: Floats, density: Floats, step: int, time: float,
             repair: str) -> Unstable:  # fmt: skip

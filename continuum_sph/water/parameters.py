@@ -105,6 +105,11 @@ class Law:
             0.25 * (lightest * h**3 / (2.0 * math.pi * self.tension)) ** 0.5 if self.tension > 0.0 else infinite,
         )
 
+    @cached_property
+    def step_at_rest(self) -> float:
+        """The step allowed where nothing is accelerated or pressed, s."""
+        return min(self.limits(0.0, self.quickest / self.smoothing.length))
+
     def limits(self, acceleration: float, sound_rate: float) -> tuple[float, float, float, float]:
         """Steps allowed by sound, acceleration (m/s²), viscosity and capillary waves, s: eq. 49, h²/ν in the third.
 

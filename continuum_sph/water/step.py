@@ -28,7 +28,7 @@ from continuum_sph.water.fluids import table
 from continuum_sph.water.image_walls import WallDensities, facing, update_walls, wall_rates
 from continuum_sph.water.kernel_correction import neighbourhood_moments
 from continuum_sph.water.leapfrog import Densities, Motion, Pressing, kick, kick_drift, pressurise
-from continuum_sph.water.no_step import no_step
+from continuum_sph.water.no_step import LEAST, no_step
 from continuum_sph.water.parameters import RULES, Law
 from continuum_sph.water.parting import LOOK, part_at_walls
 from continuum_sph.water.pressure_walls import load_walls
@@ -335,7 +335,7 @@ class Flow:
         limits = law.limits(float(acceleration2) ** 0.5, self.sound_rate)
         self.next_step = min(limits)
         self.rule = limits.index(self.next_step)
-        if not 0.0 < self.next_step < np.inf:
+        if not LEAST * law.step_at_rest <= self.next_step < np.inf:
             raise no_step(
                 self.next_step, RULES[self.rule], layer.x, layer.acceleration, layer.density, self.step, self.time,
                 "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",

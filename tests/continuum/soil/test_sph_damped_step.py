@@ -6,6 +6,7 @@ import pytest
 from continuum_sph.soil import flow, parameters
 from continuum_sph.soil.stress import Straining
 from continuum_sph.validation.soil.slopes import NEAR, layer
+from porescale.common.core.errors import Unstable
 
 
 def taken(ratio):
@@ -67,3 +68,15 @@ def test_damping_shortens_the_step_only_beyond_what_sound_allows():
     assert weak.law.share == 0.25
     assert strong.law.share == pytest.approx(0.125)
     assert strong.next_step == pytest.approx(0.5 * weak.next_step, rel=1e-12)
+
+
+def test_a_layer_whose_step_falls_to_nothing_is_unstable():
+    # Acceleration allows 0.25 √(h/|a|), sound 0.25 h/c: with |a| = c²/h as much, with 1e8 times that a ten thousandth.
+    moving = layer(NEAR, 20, damping=3.0)
+    material, h = moving.law.materials[0], moving.law.smoothing.length
+    alike = material.column_modulus / material.density / h
+    moving.soil.acceleration[7] = 0.9e8 * alike, 0.0
+    moving.end(0.0)
+    moving.soil.acceleration[7] = 1.1e8 * alike, 0.0
+    with pytest.raises(Unstable, match=r"particle 7 .* limited by acceleration"):
+        moving.end(0.0)
