@@ -40,15 +40,6 @@ class ReservoirSection(Section):
         """Highest level of the table, m; 0 without one."""
         return max((level for _, level in self.table), default=0.0)
 
-    def porosity(self, soil: SoilSection, spacing: float) -> float:
-        """Mean porosity of what lies below the strip's bottom at the start: that of ``soil`` where it holds the row of
-        particles there, of a ``spacing`` (m), and 1 elsewhere."""
-        columns = max(1, round((self.right - self.left) / spacing))
-        x = self.left + (np.arange(columns) + 0.5) * ((self.right - self.left) / columns)
-        row = np.column_stack((x, np.full(columns, self.bottom - 0.5 * spacing)))
-        share = float(np.any([body.holds(row) for body in soil.body], axis=0).mean())
-        return 1.0 - share * (1.0 - soil.porosity)
-
     def ground(self, soil: SoilSection, spacing: float, beside: float = 0.0) -> float:
         """Height (m) of the highest ``soil`` at the start above the strip's bottom, in it or ``beside`` it so far, m.
 

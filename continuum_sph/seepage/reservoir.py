@@ -1,24 +1,16 @@
 """Water kept at a level: strips of open water in which particles enter and leave, each one recorded.
 
-What stands in a strip is measured by its weight,
+What stands in a strip is measured by its weight above a line two spacings over its bottom,
 
-    level = bottom + Σ w(x_i, y_i) m_i/(ρ0 ∫ w dx)
+    level = line + Σ w(x_i, y_i) m_i/(ρ0 ∫ w dx)
 
-so that the head on what lies below is exact, however the particles are packed.  w is 1 but for cosine ramps at the ends
-that lie in the water: a column of particles that crosses an end would else change the level by its whole share.  So
-would a row that crosses the bottom, out of ground or into it, and water that rises by a fraction of a row would be let
-stand as much too high: there a straight ramp takes in rows in part, from half the distance of rows below the bottom,
-1/√n where grains leave a porosity n, 1 in the open, to half of that above it:
-
-    from -1/(2√n) to 1/2 spacings.
-
-At rest the rows on both sides of the bottom lie at its ends, so that water has its level; where it flows what is
-counted below the bottom, n (1/(2√n))²/2, is what is left out above it, (1/2)²/2, whatever n is.  That holds in the mean
-over where rows are.  A single one on its way out of ground, 1/n from the next, is up to 0.22 rows off (n = 0.3; 0.15
-with 0.5; 0 in the open); a ramp that is exact there would be longer, and count the next row of water at rest.  Where
-only part of a strip stands over ground, n is the mean.  The floor of a tank has no ramp.  One alike on both sides over
-ground makes water look sparse, and come in too near, by 7 %; that of ground, n = 0.4, counts 0.15 rows too many in the
-open.
+so that the head on what lies below is exact, however the particles are packed and whatever is below the line: over
+ground, whose grains kernels smear over two spacings and more, a row of water holds 0.05 to 0.2 less than one in the
+open, and what flows out of it stood 0.1 spacings too high where it was weighed from the bottom.  w is 1 but for cosine
+ramps at the ends that lie in the water: a column of particles that crosses an end would else change the level by its
+whole share.  So would a row that crosses the line, and water that rises by a fraction of a row would be let stand as
+much too high: there a straight ramp of a spacing, the distance of rows in the open, takes in rows in part.  Water less
+than four spacings deep is weighed above half of its depth.  On the floor of a tank all of it is.
 
 While more than half a particle is missing one is put on the lowest place of the surface, at rest or as fast as the
 surface there sinks, unless that stands far over the level already; while more than half a particle is over the highest
@@ -35,11 +27,11 @@ the change of
 
     Σ w(x_i, y_i) m_i
 
-where w is 1 in the strip, with its ramp at the bottom, and falls as a cosine beyond each end that lies in the water: to
-0 halfway to the next strip, or over 3 spacings where there is none.  It is the mass that has passed a section, in the
-mean over all sections on the way, so it has no steps of whole particles, and hardly any of the drops in which water
-leaves ground.  The sum over all reservoirs is, to round-off, what the rest of the tank has gained: nothing where
-nothing changes any more.
+where w is 1 in the strip, with a ramp of two spacings about its bottom, and falls as a cosine beyond each end that lies
+in the water: to 0 halfway to the next strip, or over 3 spacings where there is none.  It is the mass that has passed a
+section, in the mean over all sections on the way, so it has no steps of whole particles, and hardly any of the drops in
+which water leaves ground.  The sum over all reservoirs is, to round-off, what the rest of the tank has gained: nothing
+where nothing changes any more.
 
 Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
 far from each other and from all else that they have no neighbours.  A row without mass is a waiting particle.
@@ -56,7 +48,7 @@ from porescale.common.compiled.jit import kernel
 from porescale.common.core.types import Floats
 
 HALF = 0.5  # of the distance between two rows
-LEAST_POROSITY = 0.05  # of what lies below a strip, as of `mixture`
+ABOVE = 2.0  # spacings from the bottom to the line above which water is weighed: kernels end at 2.75
 RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
 BERTH = 1.5  # cutoffs between berths
 HEAP = 0.1
@@ -82,30 +74,31 @@ def park_waiting(fluid, x, v, mass, density, predicted, berth, density0):
 
 
 class Strip(NamedTuple):
-    """Where water is weighed, m: ends and the ramps beside them; bottom, how far ``below`` it a row is taken in by
-    parts, 0 on the floor of a tank, and how far above it, ``half`` a spacing."""
+    """Where water is weighed, m: ends and the ramps beside them; bottom; the line above which it is, half the height of
+    the ramp about it; ``half`` a spacing."""
 
     left: float
     right: float
     ramp_left: float
     ramp_right: float
     bottom: float
-    below: float
+    line: float
+    ramp: float
     half: float
 
 
 @kernel
 def measure_strip(fluid, x, v, mass, material, strip, least, tops, sinking):
-    """(Σ w m over the ``strip`` above its bottom, kg/m;  number of its highest particle of a w over ``least``, -1 for
+    """(Σ w m over the ``strip`` above its line, kg/m;  number of its highest particle of a w over ``least``, -1 for
     none);  overwrites ``tops`` (columns,) m, the highest particle near the middle of each column of the strip, half a
     spacing below the bottom where there is none, and ``sinking`` (columns,) m/s, its upright velocity if down, else 0.
 
     x (n, 2) m;  v (n, 2) m/s;  mass (n,) kg/m, 0: not there;  material (n,), water is 0;  strip: a `Strip`, m.
     """
-    left, right, ramp_left, ramp_right, bottom, below, half = strip
+    left, right, ramp_left, ramp_right, bottom, line, ramp, half = strip
     columns = tops.shape[0]
     breadth = (right - left) / columns
-    inverse = 1.0 / (below + half)
+    inverse = 0.5 / ramp
     for c in range(columns):
         tops[c] = bottom - half
         sinking[c] = 0.0
@@ -114,16 +107,16 @@ def measure_strip(fluid, x, v, mass, material, strip, least, tops, sinking):
     for i in range(fluid):
         if mass[i] == 0.0 or material[i] != 0 or x[i, 0] < left or x[i, 0] > right:
             continue
-        above = x[i, 1] - bottom
-        if above < -below:
+        share = max(0.0, min(1.0, 0.5 + (x[i, 1] - line) * inverse))
+        if share == 0.0 and x[i, 1] < bottom:
             continue
         weight = 1.0
         if x[i, 0] < left + ramp_left:
             weight = 0.5 - 0.5 * np.cos(np.pi * (x[i, 0] - left) / ramp_left)
         elif x[i, 0] > right - ramp_right:
             weight = 0.5 - 0.5 * np.cos(np.pi * (right - x[i, 0]) / ramp_right)
-        total += weight * mass[i] * (min(1.0, (above + below) * inverse) if below > 0.0 else 1.0)
-        if above < 0.0:
+        total += weight * mass[i] * share
+        if x[i, 1] < bottom:
             continue
         if weight > least and (highest < 0 or x[i, 1] > x[highest, 1]):
             highest = i
@@ -142,9 +135,8 @@ class Reservoir:
 
     left, right, bottom : m;  times (k,) s and levels (k,) m : straight lines between them, constant before and after;
     walls : whether each end lies at a wall of the tank;  let_in, let_out : mass recorded so far, kg/m;  level : of the
-    last step, m;  full : kg/m² of the strip to a metre of level;  porosity : of what lies below the bottom at the
-    start, 1 for open water;  strip : where it is weighed;  reach : the strip and the ways on which water counts in part
-    as passed on;  held : mass in the reach at the start, kg/m.
+    last step, m;  full : kg/m² of the strip to a metre of level;  strip : where it is weighed;  reach : the strip and
+    the ways on which water counts in part as passed on;  held : mass in the reach at the start, kg/m.
     """
 
     name: str
@@ -162,7 +154,6 @@ class Reservoir:
     tops: Floats = field(default_factory=lambda: np.zeros(0))
     sinking: Floats = field(default_factory=lambda: np.zeros(0))
     ramps: tuple[float, float] = (0.0, 0.0)
-    porosity: float = 1.0
     strip: Strip = field(init=False)
     reach: Strip = field(init=False)
 
@@ -173,20 +164,31 @@ class Reservoir:
         ramp = min(RAMP * spacing, 0.5 * breadth)
         self.ramps = (0.0 if self.walls[0] else ramp, 0.0 if self.walls[1] else ramp)
         self.full = density * self.width
-        below = HALF * spacing / max(LEAST_POROSITY, self.porosity) ** 0.5 if self.bottom > 0.0 else 0.0
-        self.strip = Strip(self.left, self.right, *self.ramps, self.bottom, below, HALF * spacing)
+        half = HALF * spacing
+        # On the floor the line lies below all water.
+        self.strip = Strip(self.left, self.right, *self.ramps, self.bottom, self.bottom - spacing, half, half)
         before = [HALF * (self.left - it.right) for it in others if it.left < self.left]
         behind = [HALF * (it.left - self.right) for it in others if it.left > self.left]
         ways = [max(0.0, min(gaps, default=RAMP * spacing)) for gaps in (before, behind)]
         first, last = (0.0 if wall else way for wall, way in zip(self.walls, ways, strict=True))
         self.reach = self.strip._replace(
-            left=self.left - first, right=self.right + last, ramp_left=first, ramp_right=last
+            left=self.left - first, right=self.right + last, ramp_left=first, ramp_right=last,
+            line=self.bottom if self.bottom > 0.0 else self.strip.line, ramp=spacing,
         )  # fmt: skip
 
     @property
     def width(self) -> float:
         """Effective width of the strip, ∫ w dx, m."""
         return self.right - self.left - 0.5 * sum(self.ramps)
+
+    def weigh_for(self, level: float) -> float:
+        """Lay the line above which water is weighed for a ``level`` (m); returns the height (m) from which that weight
+        counts."""
+        if self.bottom <= 0.0:
+            return self.bottom
+        above = min(ABOVE * 2.0 * self.strip.half, 0.5 * max(0.0, level - self.bottom))
+        self.strip = self.strip._replace(line=self.bottom + above)
+        return self.strip.line
 
     def wanted(self, time: float) -> float:
         """Level (m) at a ``time`` (s)."""
@@ -240,13 +242,14 @@ class Supply:
     def _level(self, pool: Reservoir, time: float) -> None:
         """Add or take particles until ``pool`` is within half a particle of its level."""
         layer, target, full = self.layer, pool.wanted(time), pool.full
+        line = pool.weigh_for(target)
         while True:
             held, highest = measure_strip(
                 layer.fluid, layer.x, layer.v, layer.mass, layer.material, pool.strip,
                 -1.0 if target <= pool.bottom else 0.5, pool.tops, pool.sinking,
             )  # fmt: skip
-            over = held - full * (target - pool.bottom)
-            pool.level = pool.bottom + held / full
+            over = held - full * (target - line)
+            pool.level = line + held / full
             if highest >= 0 and (over > 0.5 * layer.mass[highest] or target <= pool.bottom):
                 pool.let_out += float(layer.mass[highest])
                 layer.mass[highest] = 0.0

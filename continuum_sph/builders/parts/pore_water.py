@@ -223,7 +223,7 @@ def seepage_flow(scene: Scene, *, hasty: bool = False) -> Seepage:
     if waiting:
         stiff = law.state.density * law.state.sound_speed**2
         names = names_of(scene.reservoir, "reservoir")
-        kept = [reservoir(it, name, width, section, spacing) for name, it in zip(names, scene.reservoir, strict=True)]
+        kept = [reservoir(it, name, width) for name, it in zip(names, scene.reservoir, strict=True)]
         both.supply = Supply(layer, kept, berth, spacing, law.state.density, stiff, scene.gravity)
         both.supply.keep(0.0)
     both.start()

@@ -7,7 +7,6 @@ import numpy as np
 
 from continuum_sph.scene.reservoir import ReservoirSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.soil import SoilSection
 from continuum_sph.seepage import Reservoir, Seepage, Supply
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
@@ -73,10 +72,8 @@ def spare(scene: Scene, x: Floats) -> int:
     return max(round(scene.inner[0] / scene.numerics.spacing) * rows - present, 0) + 1
 
 
-def reservoir(section: ReservoirSection, name: str, width: float, soil: SoilSection, spacing: float) -> Reservoir:
-    """The reservoir of a section, called ``name``, in a tank of a ``width``, m, with ``soil`` and particles of a
-    ``spacing``, m."""
+def reservoir(section: ReservoirSection, name: str, width: float) -> Reservoir:
+    """The reservoir of a section, called ``name``, in a tank of a ``width``, m."""
     times, levels = (np.array(column, np.float64) for column in zip(*section.table, strict=True))
     walls = section.left <= 0.0, section.right >= width * (1.0 - 1e-9)
-    porosity = section.porosity(soil, spacing)
-    return Reservoir(name, section.left, section.right, section.bottom, times, levels, walls, porosity=porosity)
+    return Reservoir(name, section.left, section.right, section.bottom, times, levels, walls)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuum_sph.seepage import Reservoir, Supply
+from continuum_sph.seepage import Reservoir, Supply, reservoir
 from continuum_sph.seepage.reservoir import CLOSER, HEAP, berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
 from porescale.common.neighbors import square_lattice
@@ -48,83 +48,56 @@ def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are(
         assert np.array_equal(sinking, strip.sinking)
 
 
-OLD = (0.5 / 0.8) ** 2  # porosity whose half a row, 0.8 spacings, was taken for that of all ground, and open water
+def strip_at(bottom, level):
+    """A strip a spacing wide that is kept at a ``level``, over a ``bottom`` (m)."""
+    it = Reservoir("pool", 0.0, SPACING, bottom, np.zeros(1), np.full(1, level), (True, True))
+    it.fit(SPACING, 1000.0)
+    return it
 
 
-def held_over(rows, porosity, *, spacing=SPACING, weight=1.0):
-    """Rows of water held by a strip a spacing wide over a bottom at 0.5 m, whose ramp is that of ``porosity``.
+def found(rows, depth, *, bottom=0.5, weight=1.0):
+    """Level in rows over its bottom that a strip kept ``depth`` rows deep finds.
 
-    rows (k,): spacings over it;  weight (k,): of a particle.
+    rows (k,): spacings over the bottom;  weight (k,): of a particle.
     """
-    strip = Reservoir("pool", 0.0, spacing, 0.5, np.zeros(1), np.ones(1), (True, True), porosity=porosity)
-    strip.fit(spacing, 1000.0)
-    x = np.column_stack((np.full(len(rows), 0.5 * spacing), 0.5 + np.asarray(rows) * spacing))
-    mass = np.full(len(rows), 1000.0 * spacing**2) * weight
+    it = strip_at(bottom, bottom + depth * SPACING)
+    line = it.weigh_for(it.wanted(0.0))
+    x = np.column_stack((np.full(len(rows), 0.5 * SPACING), bottom + np.asarray(rows) * SPACING))
+    mass = np.full(len(rows), 1000.0 * SPACING**2) * weight
     kind, still = np.zeros(len(rows), np.int64), np.zeros_like(x)
-    held, highest = measure_strip(len(rows), x, still, mass, kind, strip.strip, 0.5, *np.zeros((2, 1)))
+    held, highest = measure_strip(len(rows), x, still, mass, kind, it.strip, 0.5, *np.zeros((2, 1)))
     assert highest == int(np.argmax(rows))
-    return held / (1000.0 * spacing**2)
+    return (line - bottom) / SPACING + held / (1000.0 * SPACING**2)
 
 
-def test_on_the_floor_of_a_tank_a_row_counts_as_a_whole():
-    strip = Reservoir("pool", 0.0, SPACING, 0.0, np.zeros(1), np.ones(1), (True, True), porosity=0.4)
-    strip.fit(SPACING, 1000.0)
-    for above in (0.01, 0.3, 0.7):
-        x, mass = np.array([[0.5 * SPACING, above * SPACING]]), np.full(1, 10.0)
-        kind, still = np.zeros(1, np.int64), np.zeros((1, 2))
-        assert measure_strip(1, x, still, mass, kind, strip.strip, 0.5, *np.zeros((2, 1)))[0] == 10.0
-        assert held_over([above], 0.4) == pytest.approx(min(1.0, (above + 0.5 / 0.4**0.5) / (0.5 + 0.5 / 0.4**0.5)))
+@pytest.mark.parametrize("above", [0.01, 0.3, 0.7])
+def test_on_the_floor_of_a_tank_a_row_counts_as_a_whole(above):
+    assert found([above], 3.0, bottom=0.0) == 1.0
+    # over ground 1.5 rows are taken for granted, and this one is below them
+    assert found([above], 3.0) == pytest.approx(1.5)
 
 
-def at_rest(porosity):
-    """Heights (12,) in spacings over the bottom, and weights, of six rows over six below it, which are 1/√n apart in
-    both directions: √n of them to a column of the open."""
-    above, apart = np.arange(6) + 0.5, 1.0 / porosity**0.5
-    return np.concatenate((above, -apart * above)), np.repeat((1.0, 1.0 / apart), 6)
+@pytest.mark.parametrize("depth", [1, 2, 3, 4, 6, 20])
+def test_water_at_rest_has_its_level_at_any_depth(depth):
+    assert found(np.arange(depth) + 0.5, depth) == pytest.approx(depth, abs=1e-12)  # round-off of 0.5 m
 
 
-@pytest.mark.parametrize("porosity", [0.05, 0.3, 0.4, 0.5, 0.7, 1.0])
-def test_water_at_rest_has_its_level_over_any_ground(porosity):
-    rows, weight = at_rest(porosity)
-    assert held_over(rows, porosity, weight=weight) == pytest.approx(6.0, abs=1e-12)  # round-off of 0.5 m
+def test_what_is_below_the_line_does_not_count():
+    rows, rng = np.arange(6) + 0.5, np.random.default_rng(1)
+    below = rng.uniform(-5.0, 1.5, 30)  # the ramp is from 1.5 to 2.5 rows
+    lie = np.concatenate((below, rows[rows > 1.5]))
+    weight = np.concatenate((rng.uniform(0.1, 2.0, 30), np.ones((rows > 1.5).sum())))
+    assert found(lie, 6.0, weight=weight) == pytest.approx(6.0, abs=1e-12)
 
 
-def test_the_ramp_of_ground_counts_too_much_water_in_the_open():
-    # the twin that must fail: the row below has 0.3 of a ramp of 1.3 spacings
-    rows, weight = at_rest(1.0)
-    assert held_over(rows, OLD, weight=weight) - 6.0 == pytest.approx(0.3 / 1.3, rel=1e-9)
+def test_a_row_that_crosses_the_line_is_taken_in_as_it_comes(monkeypatch):
+    def off():
+        """By how many rows too much is found of water that rises by a row, (50,)."""
+        return [found(np.arange(-3, 6) + 0.5 + part, 6.0) - 6.0 - part for part in np.linspace(0.0, 1.0, 50)]
 
-
-def off_on_its_way(porosity, ramp):
-    """By how many rows too much is held of water that rises by a row out of ground, (50,): over its way."""
-    off = []
-    for part in (np.arange(50) + 0.5) / 50.0:  # of a row, whose rows are n times as near once they are out
-        way = 3.5 + part - np.arange(60)
-        off.append(held_over(np.where(way > 0.0, way, way / porosity), ramp) - 4.0 - part)
-    return np.array(off)
-
-
-@pytest.mark.parametrize("porosity", [0.3, 0.4, 0.5, 1.0])
-def test_a_row_that_crosses_the_bottom_is_taken_in_as_it_comes(porosity):
-    off = off_on_its_way(porosity, porosity)
-    # the midpoint rule over 50 places of a line with kinks: (1/50)² of a row, times its slope, 1/n
-    assert abs(off.mean()) < (1.0 / 50.0) ** 2 / porosity
-    # at the lower end of the ramp a row counts nothing, and 1/2 (1 - √n) of it has come; whole rows are off by 1/2
-    assert np.abs(off).max() < 0.5 * (1.0 - porosity**0.5) + 1e-12
-
-
-def test_the_ramp_of_ground_takes_in_rows_too_early_in_the_open():
-    # the twin that must fail: (0.8²/2 - 0.5²/2)/1.3
-    assert off_on_its_way(1.0, OLD).mean() == pytest.approx((0.8**2 - 0.5**2) / 2.6, abs=1e-3)
-
-
-def test_a_strip_of_which_half_stands_over_ground_has_the_ramp_of_its_mean_porosity():
-    for porosity in (0.3, 0.4, 0.5):
-        mean = 0.5 * (porosity + 1.0)
-        off = [off_on_its_way(beneath, mean).mean() for beneath in (porosity, 1.0)]
-        assert abs(np.mean(off)) < (1.0 / 50.0) ** 2 / porosity
-        # the twin: the ramp of the ground alone
-        assert np.mean([off_on_its_way(beneath, porosity).mean() for beneath in (porosity, 1.0)]) > 0.03
+    np.testing.assert_allclose(off(), 0.0, atol=1e-12)
+    monkeypatch.setattr(reservoir, "HALF", 1e-9)  # the twin that must fail: rows count as a whole
+    assert np.abs(off()).max() > 0.4
 
 
 def test_what_has_passed_on_has_no_steps_of_whole_particles():
@@ -151,7 +124,7 @@ def test_the_ways_from_a_reservoir_end_halfway_to_the_next_or_after_three_spacin
     for it, way in ((first, (0.0, 0.2)), (second, (0.2, 0.0)), (third, (0.0, 0.3))):
         assert (it.reach.ramp_left, it.reach.ramp_right) == pytest.approx(way, abs=1e-15)
         assert (it.reach.left, it.reach.right) == pytest.approx((it.left - way[0], it.right + way[1]))
-        assert it.reach[4:] == it.strip[4:]
+        assert it.reach[4:6] == it.strip[4:6]
 
 
 def test_a_particle_on_its_way_passes_from_one_reservoir_to_the_next_by_parts():

@@ -9,8 +9,8 @@ from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
-from continuum_sph.scene.reservoir import ReservoirSection
 from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage import reservoir
 from continuum_sph.water.smoothing import RATIO
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
@@ -35,40 +35,28 @@ def scene(**changes):
     return validate(Scene, given | changes)
 
 
-def test_a_reservoir_knows_what_lies_below_its_bottom():
-    body = {"outline": [[0.3, 0], [0.7, 0], [0.7, 0.2], [0.3, 0.2]]}
-    soil = scene(soil={"porosity": 0.3, "permeability": 0.05, "body": [body]}, reservoir=[]).soil
-
-    def porosity(left, right, bottom):
-        return ReservoirSection(left=left, right=right, bottom=bottom, level=0.28).porosity(soil, 0.02)
-
-    assert porosity(0.4, 0.6, 0.2) == pytest.approx(0.3)
-    assert porosity(0.4, 0.6, 0.208) == pytest.approx(0.3)  # the row below it lies in the ground
-    assert porosity(0.4, 0.6, 0.212) == 1.0  # and here over it
-    assert porosity(0.1, 0.2, 0.2) == 1.0
-    assert porosity(0.6, 0.8, 0.2) == pytest.approx(0.65)  # half of it over ground
-
-
-def off_in_the_open():
-    """Rows by which a reservoir whose bottom lies in open water, four rows over ground, finds it too deep at first."""
+def off(bottom):
+    """Rows by which a reservoir finds its water too deep at first, over ground 0.08 m high, its ``bottom`` (m)."""
     model = Simulation(
         scene(
             water={"column": [{"width": 0.8, "height": 0.24}], "sound_speed": 30.0},
             soil={"held": True, "body": [{"outline": [[0, 0], [0.8, 0], [0.8, 0.08], [0, 0.08]]}]},
-            reservoir=[{"name": "pool", "left": 0.0, "right": 0.2, "bottom": 0.16, "level": 0.24}],
+            reservoir=[{"name": "pool", "left": 0.0, "right": 0.2, "bottom": bottom, "level": 0.24}],
         )
     )
     pool = model.flow.supply.reservoirs[0]
     return (pool.level - 0.24 - (pool.let_in - pool.let_out) / pool.full) / 0.02
 
 
-def test_a_reservoir_that_begins_in_open_water_has_its_level(monkeypatch):
-    # what remains: 0.24 m of water are 3e-3 denser than it is at rest under its own weight in the mean, of four rows
-    assert abs(off_in_the_open()) < 0.03
-    monkeypatch.setattr(
-        ReservoirSection, "porosity", lambda *_: (0.5 / 0.8) ** 2
-    )  # ground of half a row of 0.8 spacings
-    assert off_in_the_open() > 0.15  # the twin that must fail
+@pytest.mark.parametrize("bottom", [0.08, 0.16])
+def test_a_reservoir_on_ground_or_in_open_water_has_its_level(bottom):
+    # what remains: water is 3e-3 denser than it is at rest under its own weight in the mean of 8 rows
+    assert abs(off(bottom)) < 0.03
+
+
+def test_kernels_smear_grains_so_that_weight_over_ground_is_no_level(monkeypatch):
+    monkeypatch.setattr(reservoir, "ABOVE", 0.0)  # the twin that must fail
+    assert off(0.08) < -0.05
 
 
 def test_the_discharge_through_a_section_is_what_flows_in_pores():

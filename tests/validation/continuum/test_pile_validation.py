@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.parts import sheet_pile
-from continuum_sph.seepage import sheet_flow
+from continuum_sph.seepage import reservoir, sheet_flow
 from continuum_sph.validation.seepage import bare_exit
 from continuum_sph.validation.seepage.heave import (
     BOUNDS,
@@ -172,6 +172,12 @@ def test_the_exit_gradient_of_a_pile_two_rows_deeper_is_refused():  # the twin t
     deeper = replace(HALF_HEAD, share=HALF_HEAD.share + 2.0 / HALF_HEAD.rows)
     exact = (SheetPile(given.share, given.rows, given.reach).exit_gradient for given in (deeper, HALF_HEAD))
     assert abs(rising.__wrapped__(deeper) * next(exact) / next(exact) - 1.0) > row.tolerance
+
+
+@pytest.mark.slow
+def test_weighed_from_the_ground_on_water_stands_too_high_for_its_exit_gradient(monkeypatch):  # the twin that must fail
+    monkeypatch.setattr(reservoir, "ABOVE", 0.0)
+    assert 1.0 - rising.__wrapped__(HALF_HEAD) > ROWS["continuum.exit_gradient_in_a_run"].tolerance
 
 
 @pytest.mark.slow
