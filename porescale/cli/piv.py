@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import App, Parameter
 
 from porescale.cli.piv_measure import measure, quantity
-from porescale.common.cli.folders import require_writable
+from porescale.common.api.folders import require_writable
 from porescale.common.cli.options import Json
 from porescale.common.core.errors import Fault, InputError
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import require_writable
+from porescale.common.api.folders import require_writable
 from porescale.common.cli.options import Json, Threads, say, use_threads
 from porescale.common.core.errors import Fault, InputError
 
