@@ -125,16 +125,11 @@ def _as_file(program: Program, scene: Any, quality: str | None) -> Iterator[Path
         raise InputError(Fault("quality", quality, "is for scenes by path or name", repair="give it to load"))
     with TemporaryDirectory() as place:
         named = str(getattr(scene, "name", "")) or "scene"
-        file = _save(scene, Path(place) / f"{named}.toml")
+        file: Path = scene.save(Path(place) / f"{named}.toml")
         try:
             yield file
         except InputError as error:
             raise InputError([replace(it, file=it.file.replace(str(file), named)) for it in error.faults]) from None
-
-
-def _save(scene: Any, file: Path) -> Path:
-    """Write the scene to a file; returns its path."""
-    return Path(scene.save(file))
 
 
 def _kept(program: Program, scene: Any, file: Path) -> Path:
@@ -142,7 +137,8 @@ def _kept(program: Program, scene: Any, file: Path) -> Path:
     from porescale.common.schema.sections import load
 
     if not file.exists():
-        return _save(scene, file)
+        scene.save(file)
+        return file
     if load(file, program.scene()) != scene:
         problem = "holds a sweep of another scene"
         raise InputError(Fault(IN_PYTHON.out, str(file.parent), problem, repair="name another folder"))
