@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from porescale.common.api.program import Program
 from porescale.common.api.run_scene import drive_scene
-from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
     from continuum_sph.builders.simulation import Simulation
@@ -119,7 +118,6 @@ def widget(run: Run) -> Any:
 PROGRAM = Program(
     name="continuum-sph",
     module="continuum_sph",
-    version=VERSION,
     scene=scene_type,
     build=build,
     rehearsed=rehearsed,

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from porescale.common.api.program import Program
-from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
     from porescale.builders.scene import Scene
@@ -62,11 +61,12 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
     from porescale.common.core.errors import PorescaleWarning
     from porescale.common.page.page import write_report
     from porescale.common.record.open_run import open_run
+    from porescale.common.record.series import run_table
 
     def after(finished: Path) -> None:
         """Leave the pictures, the permeability of the bed if there is one, and the page unless the scene has none; warn
         of a density too far from that at rest."""
-        if doubt := density_doubt(PROGRAM.table(finished, "series")):
+        if doubt := density_doubt(run_table(finished, "series")):
             warnings.warn(doubt, PorescaleWarning, stacklevel=2)
         pictures = show(finished)
         write_permeability(open_run(finished), finished)
@@ -117,7 +117,6 @@ def widget(run: Run) -> Any:
 PROGRAM = Program(
     name="porescale",
     module="porescale",
-    version=VERSION,
     scene=scene_type,
     build=build,
     rehearsed=rehearsed,

@@ -162,12 +162,6 @@ class Simulation(ShownSimulation):
                 raise
             self._after()
 
-    def check(self) -> None:
-        """Raise Unstable when the state of a part is not finite or out of bounds."""
-        self._check_forces()
-        for part in self.parts:
-            part.check()
-
     def series(self) -> dict[str, float]:
         """One row: the time, and the columns of all parts.
 
@@ -179,13 +173,6 @@ class Simulation(ShownSimulation):
     def tables(self) -> dict[str, dict[str, float]]:
         """A row of each further table."""
         return {name: {"time (s)": self.time} | row for name, row in tables_of(self.parts).items()}
-
-    def snapshot(self) -> Snapshot:
-        """The particles now, as clouds."""
-        snapshot = Snapshot(self.time, self.step)
-        for part in self.parts:
-            part.show(snapshot)
-        return snapshot
 
     def state(self) -> dict[str, Any]:
         """Everything that later steps depend on."""

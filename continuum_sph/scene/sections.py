@@ -1,7 +1,6 @@
 """The scene of a continuum: all its sections.  SI numbers or texts with units; an absent section builds nothing."""
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import pydantic
@@ -24,7 +23,7 @@ from porescale.common.core.errors import Fault
 from porescale.common.schema.look import LookSection
 from porescale.common.schema.names import name_faults
 from porescale.common.schema.scene import SceneBase
-from porescale.common.schema.sections import Refused, load, quantity
+from porescale.common.schema.sections import Refused, quantity
 
 CALM_MACH = 10.0
 """Sound speed over the speed of free fall from the highest water: Mach number 0.1, so that density changes by 1 %."""
@@ -273,8 +272,3 @@ class Scene(SceneBase):
                               repair=f"{whole * spacing:.9g} m or a spacing of {length / whole:.9g} m would be")
                     )  # fmt: skip
         return faults
-
-
-def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
-    """The scene at ``path`` (a TOML file or a folder with scene.toml), with ``section.key=value`` settings."""
-    return load(path, Scene, quality=quality, overrides=settings)

@@ -73,7 +73,6 @@ def tank_walls(
     layers: int,
     *,
     sides: bool = True,
-    floor: bool = True,
     lid: bool = False,
 ) -> Floats:
     """Positions (n, 2) m of the wall particles around the rectangle 0 … width, 0 … height, ``layers`` deep.
@@ -83,7 +82,7 @@ def tank_walls(
     """
     columns, rows = round(width / spacing), round(height / spacing)
     i = np.arange(-layers if sides else 0, columns + (layers if sides else 0))
-    j = np.arange(-layers if floor else 0, rows + (layers if lid else 0))
+    j = np.arange(-layers, rows + (layers if lid else 0))
     grid_i, grid_j = np.meshgrid(i, j)
     inside = (grid_i >= 0) & (grid_i < columns) & (grid_j >= 0) & (grid_j < rows)
     centres: Floats = np.column_stack((grid_i[~inside], grid_j[~inside])).astype(np.float64)

@@ -1,8 +1,5 @@
 """From a scene to a simulation: fluid and grains at time 0, then each part of which the scene has the section."""
 
-from collections.abc import Sequence
-from pathlib import Path
-
 from porescale.builders.checks.device import device_of, require_device_of
 from porescale.builders.cost import require_memory
 from porescale.builders.derive import derive
@@ -14,13 +11,7 @@ from porescale.builders.scene import Scene
 from porescale.builders.simulation import Simulation
 from porescale.builders.stepper import Clock
 from porescale.builders.system import System
-from porescale.common.schema.sections import load
 from porescale.coupling.step import buoyant_weight
-
-
-def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
-    """The scene at ``path`` (a TOML file or a folder with scene.toml), with ``section.key=value`` settings."""
-    return load(path, Scene, quality=quality, overrides=settings)
 
 
 def build(scene: Scene) -> Simulation:

@@ -201,12 +201,6 @@ class Simulation(ShownSimulation):
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx)."""
         return self.stepper.fields()
 
-    def check(self) -> None:
-        """Raise Unstable, naming cell or grain, quantity and step, when the state is not finite or out of bounds."""
-        self._check_forces()
-        for part in self.parts:
-            part.check()
-
     def series(self) -> dict[str, float]:
         """One row: time, and the columns of every part.
 
@@ -217,13 +211,6 @@ class Simulation(ShownSimulation):
     def tables(self) -> dict[str, dict[str, float]]:
         """A row of each further series: what probes, flux sections and load cells read; {} where there are none."""
         return tables_of(self.parts)
-
-    def snapshot(self) -> Snapshot:
-        """Fluid as cells, grains as points."""
-        snapshot = Snapshot(self.time, self.step)
-        for part in self.parts:
-            part.show(snapshot)
-        return snapshot
 
     def state(self) -> dict[str, Any]:
         """Everything needed to go on bit for bit."""

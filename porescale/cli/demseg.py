@@ -153,7 +153,7 @@ def convert(
     overwrite: Annotated[bool, Parameter(help="replace the file")] = False,
 ) -> int:
     """Make a scene of a deck."""
-    from porescale.common.cli.folders import require_writable
+    from porescale.common.api.folders import require_writable
     from porescale.common.core.atomic import write_text
     from porescale.demseg.build import Options
     from porescale.demseg.convert import UNITS, scene_of, stretched, toml
@@ -195,7 +195,7 @@ def volonoi(
     overwrite: Annotated[bool, Parameter(help="replace the files")] = False,
 ) -> int:
     """Make polygons of the discs of in_gm.dat, thick apart: in_gm_tri.dat (Delaunay) and in_gm_volo.dat (Voronoi)."""
-    from porescale.common.cli.folders import require_writable
+    from porescale.common.api.folders import require_writable
     from porescale.common.core.atomic import write_text
     from porescale.demseg.build import with_bodies
     from porescale.demseg.check import check_bodies

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 
 from porescale.cli.homogenise_rates import Rates, known_of, sheared, table_of
 from porescale.cli.homogenise_rates import about as about_rates
-from porescale.common.cli.folders import output_folder
+from porescale.common.api.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say, use_threads
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, conclude, enlist, laid_over
 from porescale.common.core.errors import Fault, InputError

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from porescale.common.cli.folders import unusable
+from porescale.common.api.folders import unusable
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 from cyclopts import Parameter
 
 from porescale.cli.homogenise import homogenise
-from porescale.common.cli.folders import output_folder
+from porescale.common.api.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, Vary, laid_over
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, Parameter
 
-from porescale.cli.piv_measure import measure, quantity
-from porescale.common.cli.folders import require_writable
+from porescale.cli.piv_measure import measure
+from porescale.common.api.folders import require_writable
 from porescale.common.cli.options import Json
 from porescale.common.core.errors import Fault, InputError
 
@@ -108,6 +108,7 @@ def render(
 ) -> int:
     """Film a run with a virtual camera: tracers carried by its flow, as pictures, masks and a film."""
     from porescale.common.record.open_run import open_run
+    from porescale.piv import given
     from porescale.piv.images.camera import GREYS, shot_of
     from porescale.piv.images.filmed import write_frames
     from porescale.piv.images.synth import Camera
@@ -118,10 +119,10 @@ def render(
     shot = shot_of(
         opened,
         Camera(density=density, diameter=diameter, noise=noise, disc=GREYS[grains]),
-        scale=None if scale is None else quantity("--scale", scale, "m"),
-        interval=None if interval is None else quantity("--interval", interval, "s"),
-        start=None if start is None else quantity("--start", start, "s"),
-        end=None if end is None else quantity("--end", end, "s"),
+        scale=given.amount("--scale", scale, "m", bare=True),
+        interval=given.amount("--interval", interval, "s", bare=True),
+        start=given.amount("--start", start, "s", bare=True),
+        end=given.amount("--end", end, "s", bare=True),
         exposure=exposure,
         seed=seed,
     )
@@ -165,7 +166,7 @@ def compare(
 
     if out is not None:
         require_writable(out, "--out")
-    moment = None if at is None else quantity("--time", at, "s")
+    moment = given.amount("--time", at, "s", bare=True)
     bounds = (("--factor", factor, 1.0), ("--within", within, 0.0), ("--error", error, 0.0))
     given.refuse(*(given.within(key, it, Range(gt=least)) for key, it, least in bounds if it is not None))
     first, second = _field(reference, moment), _field(other, moment)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import require_writable
+from porescale.common.api.folders import require_writable
 from porescale.common.cli.options import Json, Threads, say, use_threads
 from porescale.common.core.errors import Fault, InputError
 
@@ -56,6 +56,7 @@ def measure(
     json: Json = False,
 ) -> int:
     """Measure displacements between pictures, with validity, correlation and uncertainty for every vector."""
+    from porescale.piv import given
     from porescale.piv.estimate.measure import Settings
     from porescale.piv.estimate.series import Shots
     from porescale.piv.images.film import open_film
@@ -73,14 +74,13 @@ def measure(
     )
     if folder is not None:
         require_writable(folder, "--out")
-    if no_slip and not (mask or polygon):
-        raise InputError(Fault("--no-slip", None, "there are no solids", repair="give --mask or --polygon"))
+    given.refuse(given.solids(no_slip=no_slip, there=bool(mask or polygon)))
     use_threads(threads)
     settings = Settings(window=window, overlap=overlap, search=search, smooth=smooth, no_slip=no_slip)
     film = open_film(films, start=start, end=end, step=step, region=_box(region))
-    pixel, seconds = _scales(scale, interval, film.rate)
+    pixel, seconds = given.scales(scale, interval, film.rate, bare=True)
     shots = Shots(film, mask, tuple(polygon or ()), background)
-    zero = 0.0 if time_ is None else quantity("--time", time_, "s")
+    zero = given.amount("--time", time_, "s", bare=True) or 0.0
     measurement = Measurement(shots, settings, average, pixel, seconds, zero, reject)
     fields = measurement.fields(say, _passes(measurement.pairs))
     found = write_fields(
@@ -103,18 +103,6 @@ def _box(text: str | None) -> tuple[int, int, int, int] | None:
         allowed = "left,top,right,bottom, whole px"
         raise InputError(Fault("--region", text, "is not a region", allowed=allowed)) from None
     return left, top, right, bottom
-
-
-def _scales(scale: str | None, interval: str | None, rate: float | None) -> tuple[float | None, float | None]:
-    """Metres a pixel and seconds a frame; InputError for a scale without an interval."""
-    pixel = None if scale is None else quantity("--scale", scale, "m")
-    seconds = None if interval is None else quantity("--interval", interval, "s")
-    if seconds is None and rate:
-        seconds = 1 / rate
-    if pixel is not None and seconds is None:
-        repair = 'give the time between frames: "5 ms"'
-        raise InputError(Fault("--interval", None, "is needed with --scale", repair=repair))
-    return pixel, seconds
 
 
 def _passes(pairs: int) -> Callable[[], None]:
@@ -154,20 +142,3 @@ def _print(found: dict[str, Any], json: bool) -> None:
     print(f"{found['pairs']} pairs, {fluid} vectors in the fluid, {share:.1f} % valid, {found['replaced']} replaced")
     for path in found["files"]:
         print(path)
-
-
-def quantity(key: str, text: str, unit: str) -> float:
-    """A number with or without unit, in ``unit``, positive (or zero for a time)."""
-    from porescale.common.core.units import to_si
-
-    try:
-        value = to_si(float(text), unit)
-    except ValueError:
-        try:
-            value = to_si(text, unit)
-        except ValueError as error:
-            raise InputError(Fault(key, text, str(error), unit)) from error
-    least = ">= 0" if key in ("--time", "--start", "--end") else "> 0"
-    if value < 0 or (value == 0 and least == "> 0"):
-        raise InputError(Fault(key, text, "is out of range", unit, least))
-    return value

@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from porescale.common.core.atomic import save
+from porescale.common.core.atomic import whole
 
 COLOURS = 128
 
@@ -75,7 +75,8 @@ def draw(figure: Figure, picture: Path) -> None:
     drawn = io.BytesIO()
     figure.savefig(drawn, format="png", dpi=100)
     few = Image.open(drawn).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-    save(picture, lambda path: few.save(path, format="png", optimize=True))
+    with whole(picture) as beside:
+        few.save(beside, format="png", optimize=True)
 
 
 def conclude(

@@ -11,7 +11,7 @@ from matplotlib.collections import EllipseCollection, LineCollection, PolyCollec
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.common.core.atomic import save
+from porescale.common.core.atomic import whole
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import pieces, segments_now
 from porescale.dem.forces.bonds import touched
@@ -113,5 +113,5 @@ def pixels(figure: Figure) -> NDArray[np.uint8]:
 
 def keep(figure: Figure, path: Path) -> None:
     """Write a further picture of a case beside picture.png."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    save(path, lambda beside: figure.savefig(beside, format="png", dpi=100))
+    with whole(path) as beside:
+        figure.savefig(beside, format="png", dpi=100)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from scipy.spatial import cKDTree
 
-from porescale.common.core.atomic import save
+from porescale.common.core.atomic import whole
 from porescale.common.core.types import AnyArray, Floats
 from porescale.common.pictures.look import View
 from porescale.common.record.model import Cloud, Snapshot
@@ -30,7 +30,8 @@ def write_deck_pictures(run: Run, folder: Path, view: View) -> list[Path]:
     last, made = run.snapshot(-1, cells=()), []
     for name, figure in (("contacts", contact_forces(last, view)), ("numbers", body_numbers(last, view))):
         made.append(folder / f"{name}.png")
-        save(made[-1], lambda path, drawn=figure: FigureCanvasAgg(drawn).print_png(str(path)))  # type: ignore[misc]
+        with whole(made[-1]) as beside:
+            FigureCanvasAgg(figure).print_png(str(beside))
     return made
 
 

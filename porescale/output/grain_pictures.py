@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from porescale.builders.parts.grain_instruments import CONTACTS, FIELDS
-from porescale.common.core.atomic import save
+from porescale.common.core.atomic import whole
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import Look, length_unit, time_text
 from porescale.common.pictures.picture import paint_last
@@ -63,7 +63,8 @@ def write_grain_pictures(run: Run, folder: Path, look: Look) -> list[Path]:
             ("chains", chains(last, look)), ("coordination", numbers(last, look)), ("rose", rose_of(last, look)),
         ):  # fmt: skip
             made.append(folder / f"{name}.png")
-            save(made[-1], lambda path, drawn=figure: FigureCanvasAgg(drawn).print_png(str(path)))  # type: ignore[misc]
+            with whole(made[-1]) as beside:
+                FigureCanvasAgg(figure).print_png(str(beside))
     return made
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from porescale.common.core.atomic import save
+from porescale.common.core.atomic import whole
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run
@@ -25,7 +25,8 @@ def write_rock_picture(run: Run, folder: Path) -> list[Path]:
         return []
     path = folder / "rock.png"
     figure = drawn(rock["strain ()"], rock["stress (Pa)"], rock["broken bonds ()"], run.name)
-    save(path, lambda beside: FigureCanvasAgg(figure).print_png(str(beside)))
+    with whole(path) as beside:
+        FigureCanvasAgg(figure).print_png(str(beside))
     return [path]
 
 

@@ -12,7 +12,6 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.types import AnyArray
-from porescale.common.core.units import to_si
 from porescale.piv import given
 
 if TYPE_CHECKING:
@@ -84,21 +83,16 @@ def measure(
         for key, wanted in (("overlay", overlay), ("review", review)):
             if wanted and out is None:
                 raise InputError(Fault(key, None, "has no folder to be written to", repair="give out"))
-        if no_slip and mask is None and not polygon:
-            raise InputError(Fault("no_slip", None, "there are no solids", repair="give mask or polygon"))
+        given.refuse(given.solids(no_slip=no_slip, there=mask is not None or bool(polygon)))
         if background not in ("none", "mean", "least"):
             raise InputError(Fault("background", str(background), "is unknown", allowed="none, mean, least"))
         box = None if region is None else tuple(map(int, region))
         frames = _film(film, second, start=start, end=end, step=step, region=box)
-        seconds = 1 / frames.rate if interval is None and frames.rate else _si("interval", interval, "s")
-        pixel = _si("scale", scale, "m")
-        if pixel is not None and seconds is None:
-            repair = 'give the time between frames: "5 ms"'
-            raise InputError(Fault("interval", None, "is needed with scale", repair=repair))
+        pixel, seconds = given.scales(scale, interval, frames.rate)
         solid, gone = (it if it is None or isinstance(it, np.ndarray) else str(it) for it in (mask, reject))
         shots = Shots(frames, solid, tuple(polygon), background)
         settings = Settings(window=window, overlap=overlap, search=search, smooth=smooth, no_slip=no_slip)
-        zero = _si("time", time, "s") or 0.0
+        zero = given.amount("--time", time, "s") or 0.0
         work = Measurement(shots, settings, average, pixel, seconds, zero, gone)
         fields: list[Field] = []
 
@@ -154,10 +148,10 @@ def render(
         shot = shot_of(
             opened,
             Camera(density=density, diameter=diameter, noise=noise, disc=GREYS[grains]),
-            scale=_si("scale", scale, "m"),
-            interval=_si("interval", interval, "s"),
-            start=_si("start", start, "s"),
-            end=_si("end", end, "s"),
+            scale=given.amount("--scale", scale, "m"),
+            interval=given.amount("--interval", interval, "s"),
+            start=given.amount("--start", start, "s"),
+            end=given.amount("--end", end, "s"),
             exposure=exposure,
             seed=seed,
         )
@@ -189,20 +183,6 @@ def _film(film: Films, second: Path_ | AnyArray | None, **chosen: Any) -> Film:
     return Held((), pictures=tuple(items), **chosen)
 
 
-def _si(key: str, value: float | str | None, unit: str) -> float | None:
-    """A length or time in SI units, positive (times of frames: zero too); None stays."""
-    if value is None:
-        return None
-    try:
-        found = to_si(value, unit)
-    except ValueError as error:
-        raise InputError(Fault(key, value, str(error), unit)) from None
-    least = ">= 0" if key in ("time", "start", "end") else "> 0"
-    if found < 0 or (found == 0 and least == "> 0"):
-        raise InputError(Fault(key, value, "is out of range", unit, least))
-    return found
-
-
 def _warn(text: str) -> None:
     """A doubt of a command as a warning in Python: at the caller's line, under the names of arguments."""
     warn(_words(text))
@@ -210,7 +190,9 @@ def _warn(text: str) -> None:
 
 def _in_python(error: InputError) -> InputError:
     """The faults of a command under the names of arguments: "--no-slip" is no_slip here."""
-    return InputError([replace(it, key=_words(it.key), repair=_words(it.repair)) for it in error.faults])
+    return InputError(
+        [replace(it, key=_words(it.key), problem=_words(it.problem), repair=_words(it.repair)) for it in error.faults]
+    )
 
 
 def _words(text: str) -> str:

@@ -4,6 +4,7 @@ Each check returns the faults of one argument, none where it is good; ``refuse``
 """
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeGuard
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.ranges import Range
+from porescale.common.core.units import to_si
 
 BRIGHTEST = 1e7
 """Size of a grey level, at most: sums of its fourth powers over a block of pixels, and over a thousand pairs, are
@@ -99,6 +101,48 @@ def folder(key: str, value: Any) -> list[Fault]:
         return [Fault(key, _shown(value), f"is no path but {_kind(value)}", repair="name a folder")]
     taken = value is not None and Path(value).is_file()
     return [Fault(key, str(value), "is a file", repair="name a folder")] if taken else []
+
+
+def amount(key: str, value: float | str | None, unit: str, *, bare: bool = False) -> float | None:
+    """A length or time in SI units, positive (times of frames: zero too), named as an option; None stays.
+
+    bare : a text without a unit is a number in SI units.  Raises InputError.
+    """
+    number = value
+    if bare and value is not None:
+        with suppress(ValueError):
+            number = float(value)
+    if number is None:
+        return None
+    try:
+        found = to_si(number, unit)
+    except ValueError as error:
+        raise InputError(Fault(key, value, str(error), unit)) from None
+    least = ">= 0" if key in ("--time", "--start", "--end") else "> 0"
+    if found < 0 or (found == 0 and least == "> 0"):
+        raise InputError(Fault(key, value, "is out of range", unit, least))
+    return found
+
+
+def scales(
+    scale: float | str | None, interval: float | str | None, rate: float | None, *, bare: bool = False
+) -> tuple[float | None, float | None]:
+    """Metres a pixel and seconds a frame of a film with a ``rate`` of its own; InputError for a scale without an
+    interval.  bare : as of `amount`."""
+    pixel, seconds = amount("--scale", scale, "m", bare=bare), amount("--interval", interval, "s", bare=bare)
+    if seconds is None and rate:
+        seconds = 1 / rate
+    if pixel is not None and seconds is None:
+        repair = 'give the time between frames: "5 ms"'
+        raise InputError(Fault("--interval", None, "is needed with --scale", repair=repair))
+    return pixel, seconds
+
+
+def solids(*, no_slip: bool, there: bool) -> list[Fault]:
+    """Faults of no flow at solids: whether any are ``there``, by a mask or polygons."""
+    if there or not no_slip:
+        return []
+    return [Fault("--no-slip", None, "there are no solids", repair="give --mask or --polygon")]
 
 
 def sized(value: np.ndarray) -> str:

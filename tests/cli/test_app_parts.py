@@ -99,7 +99,6 @@ def test_the_command_line_is_there_before_arrays_and_models_are():
 def test_the_parts_of_the_package_are_those_of_its_modules():
     assert PACKAGE.scene() is Scene
     assert PACKAGE.template().startswith("#")
-    assert PACKAGE.version == porescale.__version__
 
 
 def gate_at(time, step, **changes):

@@ -18,6 +18,14 @@ def complaints_in(said: str) -> list[str]:
     return [line for line in lines if not line.startswith("warning: ") and not PROGRESS.match(line)]
 
 
+def allowed(case: str, name: str) -> tuple[float, float]:
+    """Value and tolerance of a row of a case's expected.toml."""
+    from porescale.output.case import expected  # brings matplotlib, which most tests do without
+
+    (found,) = [it for it in expected(CASES / case) if it["name"] == name]
+    return found["value"], found["tolerance"]
+
+
 def script(case: str, name: str = "") -> ModuleType:
     """A new module of the script of a case, or of its script ``name``."""
     path = CASES / case / f"{name or case}.py"

@@ -148,7 +148,7 @@ def stepping() -> "Package":
 
     return replace(
         TOY, name="stepping", module="tests.reference.toy_command", scene=lambda: SteppingScene,
-        report=lambda scene: Report("stepping"), table=lambda folder, name: {},
+        report=lambda scene: Report("stepping"),
     )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from porescale.common.core.errors import Fault, InputError, PorescaleError, Unst
 from porescale.common.evidence.benchmarks import Benchmarks, Work
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.pictures.look import Look
+from porescale.common.record.series import Series
 from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.sections import Section, quantity
 
@@ -72,6 +73,7 @@ def drive(
         raise troubles[scene.trouble]()
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "card.json").write_text(json.dumps({**card, "resumed": resume, "overwrite": overwrite}))
+    write_series(folder, card["scene"])
     return Ended("finished", 10, scene.duration, 0.5, 3, 20.0)
 
 
@@ -88,13 +90,15 @@ def picture(folder: Path) -> list[Path]:
     return [folder / "end.png"]
 
 
-def columns(folder: Path, name: str) -> dict:
-    """What decayed, from the card: the toy writes no series."""
-    scene = json.loads((folder / "card.json").read_text())["scene"]
+def write_series(folder: Path, scene: dict) -> None:
+    """series.csv of what decayed in a scene."""
     decay, noise = scene["decay"], scene.get("noise")
     rate = decay["rate"] * (1.0 + noise["size"] * np.random.default_rng(noise["seed"]).normal() if noise else 1.0)
     time = np.linspace(0.0, 1.0, 11)
-    return {"time (s)": time, "left (m)": decay["start"] * np.exp(-rate * time)} if name == "series" else {}
+    series = Series(folder / "series.csv")
+    for row in zip(time, decay["start"] * np.exp(-rate * time), strict=True):
+        series.append(dict(zip(("time (s)", "left (m)"), row, strict=True)))
+    series.close()
 
 
 def seeds(scene: ToyScene) -> dict[str, int]:
@@ -129,7 +133,6 @@ TOY = Package(
     name="toy",
     module="tests.reference.toy_package",
     summary="A toy.",
-    version="1.2.3",
     scene=lambda: ToyScene,
     template=lambda: TEMPLATE,
     build=ToyModel,
@@ -137,7 +140,6 @@ TOY = Package(
     report=report,
     show=picture,
     look=lambda run: Look(),
-    table=columns,
     seeds=seeds,
     validations=validations,
     benchmarks=benchmarks,

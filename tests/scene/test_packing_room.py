@@ -2,7 +2,8 @@
 
 import pytest
 
-from porescale.builders.build import build, load_scene
+from porescale import load
+from porescale.builders.build import build
 from porescale.builders.derive import derive
 from tests.reference.folders import CASES
 from tests.reference.scenes import dry, refusals, table
@@ -58,7 +59,7 @@ def test_head_room_that_a_large_grain_takes_is_said_of_its_diameter():
     ],
 )
 def test_a_window_in_which_nothing_is_measured_is_warned_of(settings, said):
-    warnings = derive(load_scene(CASES / "permeameter", settings=settings)).warnings
+    warnings = derive(load(CASES / "permeameter", settings=settings)).warnings
     found = [it for it in warnings if it.startswith("permeability.window")]
     assert len(found) == len(said)
     assert all(part in it for part, it in zip(said, found, strict=True))

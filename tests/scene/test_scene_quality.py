@@ -2,8 +2,7 @@
 
 import pytest
 
-from porescale import Scene
-from porescale.builders.build import load_scene
+from porescale import Scene, load
 from porescale.builders.derive import derive
 from porescale.builders.report import report
 from porescale.common.core.errors import InputError
@@ -16,7 +15,7 @@ SOUND = ["column_collapse", "settling_disc"]
 
 @pytest.mark.parametrize("case", SOUND)
 def test_finer_levels_have_finer_spacing_and_the_same_physics(case):
-    scenes = [load_scene(CASES / case, quality=level) for level in LEVELS]
+    scenes = [load(CASES / case, quality=level) for level in LEVELS]
     spacings = [scene.fluid.spacing for scene in scenes]
     assert spacings == sorted(spacings, reverse=True)
     assert len(set(spacings)) == 3
@@ -35,10 +34,10 @@ def test_finer_levels_have_finer_spacing_and_the_same_physics(case):
 
 def test_the_default_quality_of_the_column_is_draft():
     # 4 cells per diameter by default, 15 at fine (the consistent reading, 1200 squared).
-    default, draft = load_scene(CASES / "column_collapse"), load_scene(CASES / "column_collapse", quality="draft")
+    default, draft = load(CASES / "column_collapse"), load(CASES / "column_collapse", quality="draft")
     assert default == draft
     assert derive(default).cells == (320, 320)
-    derived = derive(load_scene(CASES / "column_collapse", quality="fine"))
+    derived = derive(load(CASES / "column_collapse", quality="fine"))
     assert derived.cells == (1200, 1200)
     assert derived.scales.relaxation_time == pytest.approx(0.8, rel=1e-12)
     assert derived.scales.step == pytest.approx(1e-5, rel=1e-12)
@@ -46,7 +45,7 @@ def test_the_default_quality_of_the_column_is_draft():
 
 
 def test_the_column_is_the_papers():
-    scene = load_scene(CASES / "column_collapse")
+    scene = load(CASES / "column_collapse")
     packing = scene.grains.packing
     assert (scene.domain.width, scene.domain.height) == (0.12, 0.12)
     assert (packing.left, packing.width, packing.height, packing.diameter) == (0.09, 0.03, 0.072, 0.0015)
@@ -63,13 +62,13 @@ def test_the_column_is_the_papers():
 def test_settings_win_over_the_level_and_understand_units(tmp_path):
     levels = {"draft": {"fluid": {"step": 2e-5}}, "fine": {"time": {"end": 1.0}}}
     file = write(tmp_path / "scene.toml", table(quality_default="draft", quality=levels))
-    assert load_scene(file).fluid.step == 2e-5
-    assert load_scene(file, quality="fine").fluid.step == 4e-5
-    assert load_scene(file, quality="fine").time.end == 1.0
-    assert load_scene(file, settings=["fluid.step=1e-5"]).fluid.step == 1e-5
-    assert load_scene(file, settings=["fluid.spacing=0.2 mm", "gate.opens_at='3 ms'"]).gate.opens_at == 0.003
-    assert load_scene(file, settings=["grains.packing.seed=7"]).grains.packing.seed == 7
-    moved = load_scene(file, settings=["fluid.body_force=[1, 2]"])
+    assert load(file).fluid.step == 2e-5
+    assert load(file, quality="fine").fluid.step == 4e-5
+    assert load(file, quality="fine").time.end == 1.0
+    assert load(file, settings=["fluid.step=1e-5"]).fluid.step == 1e-5
+    assert load(file, settings=["fluid.spacing=0.2 mm", "gate.opens_at='3 ms'"]).gate.opens_at == 0.003
+    assert load(file, settings=["grains.packing.seed=7"]).grains.packing.seed == 7
+    moved = load(file, settings=["fluid.body_force=[1, 2]"])
     assert moved.fluid.body_force == (1.0, 2.0)
 
 
@@ -79,7 +78,7 @@ def test_a_scene_in_other_units_is_the_same_scene(tmp_path):
         fluid__spacing="200 um", fluid__step="40 us", fluid__density="1 g/cm^3", grains__density="2.5 g/cm^3",
         contact__stiffness="0.2 kN/mm", gate__lift_speed="40 cm/s",
     )  # fmt: skip
-    assert load_scene(write(tmp_path / "scene.toml", other)) == column()
+    assert load(write(tmp_path / "scene.toml", other)) == column()
 
 
 @pytest.mark.parametrize(
@@ -99,7 +98,7 @@ def test_a_scene_in_other_units_is_the_same_scene(tmp_path):
 def test_a_wrong_setting_names_key_bound_and_the_nearest_key(tmp_path, setting, words):
     file = write(tmp_path / "scene.toml", COLUMN)
     with pytest.raises(InputError) as caught:
-        load_scene(file, settings=[setting])
+        load(file, settings=[setting])
     line = caught.value.faults[0].line()
     assert line.startswith("--set: ")
     assert all(word in line for word in words), line
@@ -108,11 +107,11 @@ def test_a_wrong_setting_names_key_bound_and_the_nearest_key(tmp_path, setting, 
 def test_a_wrong_level_that_is_not_chosen_is_found_too(tmp_path):
     wrong = table(quality={"fine": {"fluid": {"step": -1.0}}})
     with pytest.raises(InputError, match=r"quality\.fine\.fluid\.step = -1\.0"):
-        load_scene(write(tmp_path / "scene.toml", wrong))
+        load(write(tmp_path / "scene.toml", wrong))
 
 
 def test_the_full_scene_with_its_defaults_makes_the_same_scene():
-    for scene in (column(), load_scene(CASES / "settling_disc"), load_scene(CASES / "column_collapse")):
+    for scene in (column(), load(CASES / "settling_disc"), load(CASES / "column_collapse")):
         full = scene_as_dict(scene)
         assert validate(Scene, full) == scene
         assert full["gravity"] == [0.0, -9.81]

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from porescale import Scene
+from porescale import Scene, load
 from porescale.builders import cost
-from porescale.builders.build import build, load_scene
+from porescale.builders.build import build
 from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
@@ -23,7 +23,7 @@ def lines(**changes: Any) -> list[str]:
 
 def test_each_repair_of_table_1_says_what_it_makes_of_the_box():
     with pytest.raises(InputError) as caught:
-        load_scene(ROOT / "cases" / "column_collapse_table1")
+        load(ROOT / "cases" / "column_collapse_table1")
     said = {fault.key: fault.repair for fault in caught.value.faults}
     # 0.12 m over 1e-5 m, and over sqrt(3 nu dt/(tau - 1/2)) = 3.1623e-5 m.
     assert said["fluid.spacing"].startswith(

@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-from porescale import Scene
+from porescale import Scene, load
 from porescale.builders import cost
-from porescale.builders.build import build, load_scene
+from porescale.builders.build import build
 from porescale.builders.derive import derive
 from porescale.builders.report import report
 from porescale.common.core.errors import InputError
@@ -358,7 +358,7 @@ def test_derived_numbers_are_absent_where_parts_are():
 
 
 def test_table_1_as_a_file_is_refused_by_load():
-    assert len(refusals(lambda: load_scene(ROOT / "cases" / "column_collapse_table1"))) == 4
+    assert len(refusals(lambda: load(ROOT / "cases" / "column_collapse_table1"))) == 4
 
 
 def test_snapshots_that_no_disk_holds_are_refused_and_many_are_warned_of():

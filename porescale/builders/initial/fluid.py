@@ -8,15 +8,16 @@ import numpy as np
 from porescale.builders.derive import Derived
 from porescale.builders.initial.fluid_options import collision_options, solid_options
 from porescale.builders.initial.frames import disc_count
-from porescale.builders.initial.ring import on_the_lattice
 from porescale.common.compiled.own import OwnLaw
 from porescale.coupling.coverage.rectangle import Rectangle
+from porescale.coupling.coverage.ring import Ring
 from porescale.coupling.lubrication import CELLS
 from porescale.coupling.step import Coupled
 from porescale.dem.grains import Grains
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
+from porescale.scene.bodies.ring import Ring as RingSection
 from porescale.scene.domain import Domain
 from porescale.scene.fluid import Fluid as FluidSection
 from porescale.scene.scene import Scene
@@ -74,7 +75,7 @@ def coupled_of(
     if scene.grains and scene.grains.hydraulic_radius_ratio:
         ratio[: disc_count(grains) - len(scene.disc)] = scene.grains.hydraulic_radius_ratio
     films = scene.lubrication
-    rings = [on_the_lattice(scene.ring, derived.scales)] if scene.ring else []
+    rings = [_ring(scene.ring, derived.scales)] if scene.ring else []
     coupled = Coupled(
         fluid, grains, derived.scales, hydraulic_ratio=ratio, contact_steps=derived.contact_steps or 1,
         acceleration=scene.gravity, **solid_options(scene.fluid),
@@ -85,3 +86,9 @@ def coupled_of(
     if rims and scene.disc:
         rims.stands[-len(scene.disc) :] = [disc.fastest == 0.0 for disc in scene.disc]
     return coupled
+
+
+def _ring(section: RingSection, scales: Scales) -> Ring:
+    """The ring in cells and steps."""
+    h = scales.spacing
+    return Ring((section.x / h, section.y / h), 0.5 * section.diameter / h, spin=section.spin * scales.step)

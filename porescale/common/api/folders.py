@@ -23,12 +23,18 @@ TYPED = Words("--out", "--resume", "--overwrite")
 IN_PYTHON = Words("out", "resume=True", "overwrite=True")
 
 
-def named_folder(out: str | Path | None, name: str, key: str) -> Path:
-    """The folder that is asked for, ``name`` in runs/ where none is; InputError, naming ``key``, where it is empty or
-    no path."""
+def named_folder(out: str | Path | None, name: str, words: Words = TYPED) -> Path:
+    """The folder that is asked for, ``name`` in runs/ where none is; InputError where it is empty or no path."""
     if out == "":
-        raise InputError(Fault(key, out, "is empty", repair="name a folder"))
-    return Path("runs") / name if out is None else path_of(key, out, "name a folder")
+        raise InputError(Fault(words.out, out, "is empty", repair="name a folder"))
+    return Path("runs") / name if out is None else path_of(words.out, out, "name a folder")
+
+
+def output_folder(out: str | Path | None, name: str = "", words: Words = TYPED) -> Path:
+    """As `named_folder`; InputError where it cannot be written, too."""
+    folder = named_folder(out, name, words)
+    require_writable(folder, words.out)
+    return folder
 
 
 def check_folder(folder: Path, package: str, *, resume: bool, overwrite: bool, words: Words = TYPED) -> None:

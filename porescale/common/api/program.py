@@ -15,7 +15,6 @@ from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
     from porescale.common.api.report import Report
-    from porescale.common.core.types import AnyArray
     from porescale.common.pictures.look import Look
     from porescale.common.record.drive import Outcome
     from porescale.common.record.open_run import Run
@@ -43,22 +42,14 @@ class Drive(Protocol):
         """
 
 
-def run_table(folder: Path, name: str) -> Mapping[str, AnyArray]:
-    """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
-    from porescale.common.record.series import read_series
-
-    return read_series(folder / f"{name}.csv")
-
-
 @dataclass(frozen=True, kw_only=True)
 class Program:
     """What runs scenes of one kind.
 
-    name : of the command and on run cards;  module : its Python package;  version;  scene : gives the scene type;
+    name : of the command and on run cards;  module : its Python package;  scene : gives the scene type;
     build : scene -> model, of scenes that report accepts;  drive : runs it;  report : scene -> the report of `check`,
     warnings and all (it may raise InputError);
     show : makes pictures and a film in a run folder and gives their paths;  look : how they show a run;
-    table : columns of a table of a run folder by its name, "series" for series.csv;
     seeds : of all that a scene draws at random, by key, what repeats of a run are numbered by; none: nothing is drawn;
     measured : sections of a scene that can be measured on a finished run, by key;  measure : measures those of a scene
     (that of the run, with them in place of its own), the tables by name, each columns by name;
@@ -69,14 +60,12 @@ class Program:
 
     name: str
     module: str
-    version: str
     scene: Callable[[], type[SceneBase]]
     build: Callable[[Any], Any]
     drive: Drive
     report: Callable[[Any], Report]
     show: Callable[[Path], Iterable[Path]]
     look: Callable[[Run], Look]
-    table: Callable[[Path, str], Mapping[str, AnyArray]] = run_table
     seeds: Callable[[Any], Mapping[str, int]] | None = None
     measured: Sequence[str] = ()
     measure: Callable[[Run, Any], Mapping[str, Mapping[str, Sequence[float]]]] | None = None

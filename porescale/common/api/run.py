@@ -37,7 +37,7 @@ def run(
     card = card_of(program, scene)
     if model is not None and model.hooks:
         card["hooks"] = {name: hook.on_card() for name, hook in model.hooks.items()}
-    folder = named_folder(out, card["name"] or "scene", IN_PYTHON.out)
+    folder = named_folder(out, card["name"] or "scene", IN_PYTHON)
     card["name"] = card["name"] or folder.resolve().name
     check_folder(folder, program.name, resume=resume, overwrite=overwrite, words=IN_PYTHON)
     report = program.report(scene)  # what contradicts itself is refused

@@ -16,7 +16,7 @@ from porescale.common.api.hooks import EveryHook, ForceFunction, ForceHook, Hook
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.ranges import is_number
 from porescale.common.record.columns import Columns
-from porescale.common.record.model import variable_step
+from porescale.common.record.model import Snapshot, variable_step
 from porescale.common.record.record import MADE_LATER
 from porescale.common.record.schedule import CHECK_EVERY, SLACK, block
 from porescale.common.record.stop import polite_stop
@@ -24,7 +24,6 @@ from porescale.common.record.stop import polite_stop
 if TYPE_CHECKING:
     from porescale.common.core.types import Floats
     from porescale.common.duration.quiet import Moment
-    from porescale.common.record.model import Snapshot
     from porescale.common.record.part import Part
     from porescale.common.record.progress import Watch
 
@@ -70,17 +69,23 @@ class BaseSimulation(ABC):
             repair = "give a whole number as 10"
             raise InputError(Fault("steps", str(steps), "is no number of steps", allowed=">= 0, whole", repair=repair))
 
-    @abstractmethod
     def check(self) -> None:
-        """Raise Unstable where the state is not finite or out of bounds."""
+        """Raise Unstable, naming cell, grain or particle, quantity and step, where the state is not finite or out of
+        bounds."""
+        self._check_forces()
+        for part in self.parts:
+            part.check()
 
     @abstractmethod
     def series(self) -> dict[str, float]:
         """One row of series.csv: the time, and what is measured now, by column with unit."""
 
-    @abstractmethod
     def snapshot(self) -> Snapshot:
         """Grids and clouds now, as they are recorded; arrays may be views."""
+        snapshot = Snapshot(self.time, self.step)
+        for part in self.parts:
+            part.show(snapshot)
+        return snapshot
 
     @abstractmethod
     def state(self) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from porescale.common.api.folders import IN_PYTHON, named_folder, require_writable
+from porescale.common.api.folders import IN_PYTHON, output_folder
 from porescale.common.api.load_scene import Settings, setting_texts
 from porescale.common.api.shipped import scene_path
 from porescale.common.core.errors import Fault, InputError, warn
@@ -45,6 +45,7 @@ def sweep(
     again: bool = False,
 ) -> pandas.DataFrame:
     """The runs of a sweep as a DataFrame; see ``sweep`` of the packages."""
+    from porescale.common.record.series import run_table
     from porescale.common.studies.ensemble import Repeats, ensembles, repeated
     from porescale.common.studies.runner import FINISHED, Campaign
     from porescale.common.studies.sweep import check_points, columns_at_end, expected, run_points
@@ -61,8 +62,7 @@ def sweep(
         if asked:
             points = repeated(program, start, points, asked, quality, texts)
             check_points(program, start, points, quality, texts)
-        folder = named_folder(out, f"{name}_sweep", IN_PYTHON.out)
-        require_writable(folder, IN_PYTHON.out)
+        folder = output_folder(out, f"{name}_sweep", IN_PYTHON)
         given = scene if isinstance(scene, program.scene()) else None
         if given is not None:
             file = _kept(program, given, folder / start.name)
@@ -70,17 +70,17 @@ def sweep(
     rows = expected(beside) if beside is not None else []
     campaign = Campaign(program.module, file, folder, texts, quality, threads, again)
     command = f"{program.module}.sweep"
-    ends = run_points(program, campaign, points, jobs, rows, command, log.info)
+    ends = run_points(campaign, points, jobs, rows, command, log.info)
     for ended in ends:
         if ended.outcome != FINISHED:
             warn(f"{ended.point.name}: {ended.outcome}: {ended.problem}")
-    rows = rows or columns_at_end(program, ends)
-    made = pd.DataFrame(lines_of(ends, rows, program.table))
+    rows = rows or columns_at_end(ends)
+    made = pd.DataFrame(lines_of(ends, rows, run_table))
     for key in keys_of(ends):
         made[key] = [_value(text) for text in made[key]]
     made.attrs["folder"] = str(folder)
     if asked:
-        lines = ensemble_lines(ensembles(points, ends), rows, program.table)
+        lines = ensemble_lines(ensembles(points, ends), rows, run_table)
         made.attrs["ensembles"] = [dict(line.cells) for line in lines]
     found: pandas.DataFrame = made
     return found
@@ -125,16 +125,11 @@ def _as_file(program: Program, scene: Any, quality: str | None) -> Iterator[Path
         raise InputError(Fault("quality", quality, "is for scenes by path or name", repair="give it to load"))
     with TemporaryDirectory() as place:
         named = str(getattr(scene, "name", "")) or "scene"
-        file = _save(scene, Path(place) / f"{named}.toml")
+        file: Path = scene.save(Path(place) / f"{named}.toml")
         try:
             yield file
         except InputError as error:
             raise InputError([replace(it, file=it.file.replace(str(file), named)) for it in error.faults]) from None
-
-
-def _save(scene: Any, file: Path) -> Path:
-    """Write the scene to a file; returns its path."""
-    return Path(scene.save(file))
 
 
 def _kept(program: Program, scene: Any, file: Path) -> Path:
@@ -142,7 +137,8 @@ def _kept(program: Program, scene: Any, file: Path) -> Path:
     from porescale.common.schema.sections import load
 
     if not file.exists():
-        return _save(scene, file)
+        scene.save(file)
+        return file
     if load(file, program.scene()) != scene:
         problem = "holds a sweep of another scene"
         raise InputError(Fault(IN_PYTHON.out, str(file.parent), problem, repair="name another folder"))

@@ -17,6 +17,7 @@ from porescale.common.cli.diagnostics import printed
 from porescale.common.cli.entry import INTERRUPTED
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import InputError, PorescaleError
+from porescale.common.core.version import VERSION
 from porescale.common.page import command as report
 from porescale.common.watch import command as watch
 
@@ -40,7 +41,7 @@ def application(package: Package) -> App:
     app = App(
         name=package.name,
         help=package.summary,
-        version=package.version,
+        version=VERSION,
         default_parameter=Parameter(negative=(), converter=_whole),
         result_action="return_value",
         suppress_keyboard_interrupt=False,

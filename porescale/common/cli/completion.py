@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from cyclopts import App, Parameter
 
-from porescale.common.cli.folders import unusable
+from porescale.common.api.folders import unusable
 from porescale.common.core.errors import Fault, InputError
 
 Shell = Annotated[

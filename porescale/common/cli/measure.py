@@ -6,7 +6,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import require_writable
+from porescale.common.api.folders import require_writable
 from porescale.common.cli.package import Package
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import unusable
+from porescale.common.api.folders import unusable
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 

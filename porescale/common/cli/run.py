@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from porescale.common.api.folders import check_folder
+from porescale.common.api.folders import check_folder, named_folder
 from porescale.common.api.run_scene import card_of, check_scene_resume
 from porescale.common.cli import pick
-from porescale.common.cli.folders import named_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError

@@ -9,8 +9,8 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
+from porescale.common.api.folders import output_folder
 from porescale.common.cli import trade
-from porescale.common.cli.folders import output_folder
 from porescale.common.cli.options import (
     Json,
     List,
@@ -137,7 +137,7 @@ def _stability(package: Package) -> Callable[..., int]:
         kept = study.stored(folder, others, quick)
         shown = [flow for flow in package.stability() if flow.name in {row.flow for row in kept + rows}]
         words = _command_line(package, "stability", () if kept else names, *(["--quick"] if quick else []))
-        study.write(folder, words, package.version, shown, kept + rows, quick)
+        study.write(folder, words, shown, kept + rows, quick)
         if json:
             print_json(row.as_dict() for row in rows)
         else:

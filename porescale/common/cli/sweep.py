@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import output_folder
+from porescale.common.api.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
@@ -65,6 +65,7 @@ def command(package: Package) -> Callable[..., int]:
         scene, else how every column of the series ends.  Of repeats ensemble.csv has means with intervals, judged by
         expected.toml.  A sweep that was stopped goes on when called again.
         """
+        from porescale.common.record.series import run_table
         from porescale.common.studies import ensemble_files, sweep_files
         from porescale.common.studies.ensemble import Repeats, ensembles, repeated
         from porescale.common.studies.runner import Campaign
@@ -83,10 +84,8 @@ def command(package: Package) -> Callable[..., int]:
         words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying, *asked.options()]
         command_line = shlex.join([*words, *laid_over(quality, settings)])
         rows = expected(file)
-        ends = run_points(package, campaign, points, jobs, rows, command_line, say)
-        lines = sweep_files.ensemble_lines(
-            ensembles(points, ends), rows or columns_at_end(package, ends), package.table
-        )
+        ends = run_points(campaign, points, jobs, rows, command_line, say)
+        lines = sweep_files.ensemble_lines(ensembles(points, ends), rows or columns_at_end(ends), run_table)
         for text in ensemble_files.printed(lines):
             print(text)
         print(f"{folder / sweep_files.NAME}.csv, .md, .png" + (f", {ensemble_files.NAME}.csv" if asked else ""))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import output_folder
+from porescale.common.api.folders import output_folder
 from porescale.common.cli.options import Scene, Settings, ThreadsOfEach, require_scene, say, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.sweep import (
@@ -22,6 +22,7 @@ from porescale.common.cli.sweep import (
     laid_over,
 )
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.version import VERSION
 from porescale.common.studies.sweep import check_points
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ def command(package: Package) -> Callable[..., int]:
         pick from it.  Every point is repeated as [over] of the plan says, or `--repeat`.  A study that was stopped goes
         on when called again.
         """
+        from porescale.common.record.series import run_table
         from porescale.common.schema.sections import load, scene_as_dict
         from porescale.common.studies import trade_files
         from porescale.common.studies.ensemble import Repeats, repeated
@@ -86,7 +88,7 @@ def command(package: Package) -> Callable[..., int]:
             say("the reference did not finish: nothing to hold the others against")
             return code
         reference_ends = [ends[point.name] for point in truth]
-        errors = Errors(planned, package.table, features, reference_ends)
+        errors = Errors(planned, run_table, features, reference_ends)
         traded = front(
             [errors.trade(knob, label, point, [ends[one.name] for one in group])
              for (knob, label, point), group in zip(variants, groups, strict=True)]
@@ -120,7 +122,7 @@ def circumstances(package: Package, command: str, threads: int) -> dict[str, Any
     from porescale.common.core.machine import machine
 
     return {
-        "command": command, "package": package.name, "version": package.version, "threads": threads,
+        "command": command, "package": package.name, "version": VERSION, "threads": threads,
         "machine": machine(),
         "date": datetime.now(UTC).date().isoformat(),
     }  # fmt: skip

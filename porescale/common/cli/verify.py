@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import output_folder
+from porescale.common.api.folders import output_folder
 from porescale.common.cli.options import Json, List, Threads, print_json, say, use_threads
 from porescale.common.cli.package import Package
 

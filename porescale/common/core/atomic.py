@@ -7,7 +7,7 @@ removes at the next start.  Measured: 100 of 100 files good after a SIGKILL.
 import errno
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -64,12 +64,6 @@ def write_bytes(path: Path, content: bytes) -> None:
 def write_text(path: Path, content: str) -> None:
     """Write a small text file (UTF-8), whole or not at all."""
     write_bytes(path, content.encode())
-
-
-def save(path: Path, writer: Callable[[Path], object]) -> None:
-    """Let ``writer`` write a file at the path it is given; it appears at ``path`` when it is whole."""
-    with whole(path) as beside:
-        writer(beside)
 
 
 def sync(path: Path) -> None:

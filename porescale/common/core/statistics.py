@@ -42,19 +42,19 @@ def deviation(values: Sequence[float] | Floats) -> float:
     return 0.0 if equal(values) else float(np.std(values, ddof=1))
 
 
-def student(count: float, level: float = LEVEL) -> float:
+def student(count: float) -> float:
     """Half of Student's interval in standard errors of a mean of ``count`` independent values."""
     from scipy.special import stdtrit
 
-    return float(stdtrit(count - 1.0, 0.5 + 0.5 * level))
+    return float(stdtrit(count - 1.0, 0.5 + 0.5 * LEVEL))
 
 
-def half_width(values: Sequence[float] | Floats, level: float = LEVEL) -> float:
+def half_width(values: Sequence[float] | Floats) -> float:
     """Half of Student's interval of the mean of independent ``values`` (n,), in their unit; nan below LEAST values."""
     count = len(values)
     if count < LEAST:
         return math.nan
-    return student(count, level) * deviation(values) / math.sqrt(count)
+    return student(count) * deviation(values) / math.sqrt(count)
 
 
 def independent(values: Floats) -> float:
@@ -87,7 +87,7 @@ def needed(values: Sequence[float], width: float) -> float:
 
 
 @lru_cache(maxsize=4096)
-def bootstrap(values: tuple[float, ...], level: float = LEVEL, resamples: int = RESAMPLES) -> tuple[float, float]:
+def bootstrap(values: tuple[float, ...], resamples: int = RESAMPLES) -> tuple[float, float]:
     """Ends of the bootstrap's interval of the mean of independent ``values``, in their unit; nan below LEAST values.
 
     Bias-corrected and accelerated (Efron 1987, J. Am. Stat. Assoc. 82, 171), by a fixed generator from the values in
@@ -102,7 +102,7 @@ def bootstrap(values: tuple[float, ...], level: float = LEVEL, resamples: int = 
     from scipy import stats
 
     found = stats.bootstrap(
-        (drawn,), np.mean, n_resamples=resamples, confidence_level=level, method="BCa", rng=np.random.default_rng(0)
+        (drawn,), np.mean, n_resamples=resamples, confidence_level=LEVEL, method="BCa", rng=np.random.default_rng(0)
     ).confidence_interval
     return float(found.low), float(found.high)
 

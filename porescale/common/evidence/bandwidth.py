@@ -60,12 +60,8 @@ class Copy:
         self.one = kind.type(1)
         self.bytes = 2 * self.values.nbytes
 
-    def __call__(self) -> None:
-        """Go over the memory once in each form, on this copy's number of threads."""
-        self.seconds()
-
     def seconds(self) -> float:
-        """Seconds in which the memory is gone over once, by the faster form."""
+        """Seconds in which the memory is gone over once on this copy's number of threads: the faster of both forms."""
         before = threads()
         set_threads(self.count)
         spent = min(seconds_of(lambda: flip(self.values, self.one)), seconds_of(lambda: flip_nine(self.nine, self.one)))

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from porescale.common.api.report import shown
+from porescale.common.core.version import VERSION
 from porescale.common.evidence import files
 from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Flow, Row, holds_up_to
 
@@ -22,10 +23,10 @@ COLOURS = {RIGHT: "#2c7fb8", STABLE: "#fec44f", UNSTABLE: "#a50f15"}
 """A verdict in the picture: three hues that stay apart without colour, too."""
 
 
-def write(folder: Path, command: str, version: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> None:
+def write(folder: Path, command: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> None:
     """Write the four files into ``folder``, which is made if it is not there."""
     rows = [row for flow in flows for row in rows if row.flow == flow.name]
-    about = {"command": command, "version": version, "quick": quick, "flows": [as_dict(it, quick) for it in flows]}
+    about = {"command": command, "version": VERSION, "quick": quick, "flows": [as_dict(it, quick) for it in flows]}
     files.write_study(
         folder,
         NAME,

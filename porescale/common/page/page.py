@@ -123,8 +123,8 @@ def _entries(run: Run, precision: Precision) -> Iterator[tuple[str, bytes]]:
         yield f"frame {i}", _packed(content)
     about = meta(run, precision) | {"errors": errors}
     for name in about["tables"]:
-        yield f"table {name}", _packed(_json(table(run, name)))
-    yield "meta", _packed(_json(plain(about)))
+        yield f"table {name}", _packed(compact(table(run, name)).encode())
+    yield "meta", _packed(compact(plain(about)).encode())
 
 
 def _largest(errors: dict[str, float], content: bytes) -> None:
@@ -137,8 +137,9 @@ def _largest(errors: dict[str, float], content: bytes) -> None:
                 errors[key] = max(errors.get(key, 0.0), spec.get("error", 0.0))
 
 
-def _json(value: Any) -> bytes:
-    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
+def compact(value: Any) -> str:
+    """``value`` as JSON that browsers read, without a space; ValueError for a number that is none."""
+    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 
 def page(title: str, runs: Sequence[Sequence[tuple[str, bytes]]]) -> str:

@@ -16,11 +16,9 @@ import numpy as np
 from porescale.common.compiled import jit
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault
-from porescale.common.core.machine import machine as machine
+from porescale.common.core.machine import machine
 from porescale.common.core.version import VERSION
-from porescale.common.record.read_card import FORMAT
-from porescale.common.record.read_card import NAME as NAME
-from porescale.common.record.read_card import read_card as read_card
+from porescale.common.record.read_card import FORMAT, NAME
 
 RUNNING, FINISHED, INTERRUPTED, UNSTABLE, FAILED = "running", "finished", "interrupted", "unstable", "failed"
 FREE = (

@@ -14,11 +14,13 @@ from porescale.common.duration.expected import FINISHING, RECORDING, STEPS
 from porescale.common.duration.quiet import moment, quiet_seconds, share
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
-from porescale.common.record.check_state import check_state
+from porescale.common.record.check_state import CHECKPOINT, check_state
 from porescale.common.record.cost import UNCOUNTED
 from porescale.common.record.model import Model, variable_step
 from porescale.common.record.progress import Watch
-from porescale.common.record.record import CHECKPOINT, Gone, Record, Today, check_changes
+from porescale.common.record.read_card import NAME as CARD
+from porescale.common.record.read_card import read_card
+from porescale.common.record.record import Gone, Record, Today, check_changes
 from porescale.common.record.resume import how_far, require_same_run
 from porescale.common.record.sampler import Sampler, samplers_of
 from porescale.common.record.schedule import CHECK_EVERY, SLACK, Schedule, block, positive
@@ -104,7 +106,7 @@ def drive(
             clean(folder)
             run = _Run(model, duration, step_seconds, schedules, samplers, checkpoint_seconds, meanwhile)
             name = str(card.get("name") or folder.name)
-            resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
+            resume = resume and (folder / CHECKPOINT).exists() and (folder / CARD).exists()
             if resume:
                 check_changes(folder, card, today)
                 done = _already(folder, run)
@@ -125,7 +127,7 @@ def check_resume(folder: Path, card: dict[str, Any], today: Today | None = None)
     What can be checked without a model, which may take long to build: whether it is this scene's, and whether its
     checkpoint is one and valid.  Nothing where there is no checkpoint yet.
     """
-    if (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists():
+    if (folder / CHECKPOINT).exists() and (folder / CARD).exists():
         check_changes(folder, card, today)
         check_state(folder)
 
@@ -303,7 +305,7 @@ def _already(folder: Path, run: _Run) -> Outcome | None:
     step, time = reached.step, reached.time
     if not run.ended(step, time):
         return None
-    card = cards.read_card(folder)
+    card = read_card(folder)
     if card.get("outcome") == cards.FINISHED:
         require_same_run(folder, reached, card)
         count = len(snapshots.catalogue(folder))

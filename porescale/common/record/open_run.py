@@ -9,10 +9,10 @@ import numpy as np
 
 from porescale.common.core.atomic import owned
 from porescale.common.core.types import AnyArray
-from porescale.common.record import card as cards
 from porescale.common.record import snapshots
 from porescale.common.record.columns import Columns
 from porescale.common.record.model import Snapshot
+from porescale.common.record.read_card import read_card
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series
 from porescale.common.record.vtkhdf import Frame, Readers
@@ -100,7 +100,7 @@ def open_run(folder: Path | str) -> Run:
     InputError when the folder holds no run or its files are damaged.
     """
     folder = Path(folder)
-    card = cards.read_card(folder)
+    card = read_card(folder)
     try:
         if snapshots.parts(folder):
             _join(folder)

@@ -16,10 +16,12 @@ from porescale.common.core.errors import Fault, InputError, PorescaleError, Pore
 from porescale.common.core.machine import peak_bytes
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
+from porescale.common.record.check_state import CHECKPOINT
 from porescale.common.record.checkpoint import write_checkpoint
 from porescale.common.record.cost import Cost
 from porescale.common.record.model import Model, tables_of
-from porescale.common.record.resume import CHECKPOINT as CHECKPOINT
+from porescale.common.record.read_card import NAME as CARD
+from porescale.common.record.read_card import read_card
 from porescale.common.record.resume import how_far, take_up
 from porescale.common.record.sampler import Sampler
 from porescale.common.record.schedule import Schedule
@@ -79,12 +81,12 @@ class Record:
 
         Its card goes last: a kill before that leaves a folder that is still recognised as a run's.
         """
-        if (folder / cards.NAME).exists():
+        if (folder / CARD).exists():
             if not overwrite:
                 _require_replaceable(folder)
             snapshots.clear(folder)
             older = [f"{name}.csv" for name in _tables_of_run(folder)]
-            for name in (SERIES, *older, CHECKPOINT, *MADE_LATER, cards.NAME):
+            for name in (SERIES, *older, CHECKPOINT, *MADE_LATER, CARD):
                 (folder / name).unlink(missing_ok=True)
         card = cards.new_card(given)
         cards.write_card(folder, card)
@@ -96,7 +98,7 @@ class Record:
 
         InputError, and nothing touched, where checkpoint or rows are not those of such a run.
         """
-        card = cards.read_card(folder)
+        card = read_card(folder)
         saved = take_up(folder, model, schedules)
         require_length(folder / SERIES, saved.series_bytes)
         for name, size in saved.table_bytes.items():
@@ -241,7 +243,7 @@ def check_changes(folder: Path, given: dict[str, Any], today: Today | None = Non
 
     Keys that came after that run are filled in by ``today`` with values that continue it unchanged.
     """
-    old, new = cards.read_card(folder, given.get("package"))["scene"], cards.plain(given).get("scene")
+    old, new = read_card(folder, given.get("package"))["scene"], cards.plain(given).get("scene")
     whole: Any = old
     if today is not None and isinstance(old, Mapping) and cards.changed_keys(old, new):
         whole = cards.plain(today(old))
@@ -256,8 +258,8 @@ def check_changes(folder: Path, given: dict[str, Any], today: Today | None = Non
             way = "" if whole is old else f"{same} to go on as that did, or "
         value = now if now is not None else "absent"
         faults.append(Fault(key or "scene", value, problem, repair=f"{way}start another run"))
-    faults += cards.changed_laws(cards.read_card(folder), cards.plain(given))
-    faults += changed_hooks(cards.read_card(folder).get("hooks") or {}, given.get("hooks") or {})
+    faults += cards.changed_laws(read_card(folder), cards.plain(given))
+    faults += changed_hooks(read_card(folder).get("hooks") or {}, given.get("hooks") or {})
     if faults:
         raise InputError(faults)
 
@@ -266,7 +268,7 @@ def changed_hooks(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Fault]
     """What differs between the hooks of two cards, of a run and of what is to go on with it."""
     faults = []
     for name in dict.fromkeys([*old, *new]):
-        was, now, repair = old.get(name), new.get(name), f"take it from {cards.NAME}, or start another run"
+        was, now, repair = old.get(name), new.get(name), f"take it from {CARD}, or start another run"
         if now is None:
             problem, repair = "the run was begun with this hook", "resume it from Python with the hook"
         elif was is None:
@@ -297,7 +299,7 @@ def _table(folder: Path, name: str) -> Path:
 def _tables_of_run(folder: Path) -> list[str]:
     """Names of the tables of the run in ``folder``, as its card has them; none where the card is damaged."""
     try:
-        return [str(name) for name in cards.read_card(folder).get(TABLES, []) if Path(str(name)).name == str(name)]
+        return [str(name) for name in read_card(folder).get(TABLES, []) if Path(str(name)).name == str(name)]
     except InputError:
         return []
 
@@ -305,7 +307,7 @@ def _tables_of_run(folder: Path) -> list[str]:
 def _require_replaceable(folder: Path) -> None:
     """InputError when ``folder`` holds an unfinished run worth keeping."""
     try:
-        outcome = cards.read_card(folder).get("outcome")
+        outcome = read_card(folder).get("outcome")
         reached = how_far(folder)
     except InputError:  # nothing there that could be resumed
         return

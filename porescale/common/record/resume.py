@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from porescale.common.core.errors import InputError, Unstable
-from porescale.common.record.check_state import CHECKPOINT as CHECKPOINT
-from porescale.common.record.check_state import misfit, other, senseless
+from porescale.common.record.check_state import CHECKPOINT, misfit, other, senseless
 from porescale.common.record.checkpoint import read_checkpoint, read_header
 from porescale.common.record.cost import Cost
 from porescale.common.record.model import Model

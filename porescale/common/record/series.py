@@ -83,6 +83,11 @@ def read_names(path: Path) -> list[str] | None:
         return next(csv.reader(file), None)
 
 
+def run_table(folder: Path, name: str) -> dict[str, AnyArray]:
+    """Columns of a table of the run in ``folder``, "series" for series.csv, as `read_series` has them."""
+    return read_series(folder / f"{name}.csv")
+
+
 def read_series(path: Path) -> dict[str, AnyArray]:
     """Columns by name, each (rows,) float64, or names of bodies (WORDS).
 

@@ -21,6 +21,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.duration.expected import besides
 from porescale.common.evidence.benchmarks import Benchmarks, Dtype, Work
 from porescale.common.record.read_card import read_card
+from porescale.common.record.series import run_table
 from porescale.common.schema.scene_file import find
 from porescale.common.schema.sections import load, validate
 from porescale.common.studies.front import Choice, Front, FrontPoint, begun, choose, percent, read_front
@@ -86,7 +87,7 @@ def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
         model = package.build(made)
         package.drive(model, folder, made, card=card_of(package, made), resume=False, quiet=True)
         took = time.perf_counter() - before
-        return compare(choice, took, read_card(folder), *error_of(package, front, point, folder))
+        return compare(choice, took, read_card(folder), *error_of(front, point, folder))
 
 
 def compare(choice: Choice, took: float, card: Mapping[str, Any], said: float, found: float | None) -> Promise:
@@ -100,7 +101,7 @@ def settings(point: FrontPoint) -> tuple[str, ...]:
     return (f"time.end={point.time!r}", *point.settings)
 
 
-def error_of(package: Package, front: Front, point: FrontPoint, folder: Path) -> tuple[float, float | None]:
+def error_of(front: Front, point: FrontPoint, folder: Path) -> tuple[float, float | None]:
     """Error of the front and rms distance of a run from the answers of its first reference, over the quantities
     whose answers it keeps: numbers, not curves and fields.  The error in all quantities and None where there are none.
     """
@@ -109,7 +110,7 @@ def error_of(package: Package, front: Front, point: FrontPoint, folder: Path) ->
     known = [validate(Quantity, row) for row in table["quantities"] if row["name"] in answers]
     if not known:
         return point.error, None
-    distances = [(measured(package.table(folder, it.file), it.row()) - answers[it.name][0]) / it.scale for it in known]
+    distances = [(measured(run_table(folder, it.file), it.row()) - answers[it.name][0]) / it.scale for it in known]
     return rms([point.errors[it.name] for it in known]), rms(distances)
 
 

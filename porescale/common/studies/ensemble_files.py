@@ -58,18 +58,15 @@ def _cells(one: Ensemble, keys: Sequence[str], row: Mapping[str, Any], known: Ju
         judgement["remark"] = remark(one, known)
         if known.verdict:
             judgement |= {"value": row["value"], "tolerance": row["tolerance"], "inside": known.inside}
-            judgement |= {"verdict": known.verdict, "needed": None if known.needed is None else _finite(known.needed)}
+            judgement |= {"verdict": known.verdict, "needed": files.finite(known.needed)}
     return made | numbers | judgement
 
 
 def worth(sample: Sample) -> list[float | None]:
     """The numbers of WORTH, None for what there is not."""
     ends = sample.mean - sample.half, sample.mean + sample.half, *bootstrap(sample.values)
-    return [_finite(it) for it in (sample.mean, sample.deviation, sample.error, *ends)]
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    made: list[float | None] = files.finite([sample.mean, sample.deviation, sample.error, *ends])
+    return made
 
 
 def remark(one: Ensemble, known: Judged) -> str:

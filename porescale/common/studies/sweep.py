@@ -23,7 +23,6 @@ SELDOM = 5.0
 
 
 def run_points(
-    program: Program,
     campaign: Campaign,
     points: Sequence[Point],
     jobs: int | None,
@@ -36,11 +35,12 @@ def run_points(
     rows : what is compared, as `expected` gives it; none: how every column of the series ends;  command : that the
     files name;  say : as of `Campaign.all`.
     """
+    from porescale.common.record.series import run_table
     from porescale.common.studies import sweep_files
 
     ends: list[Ended] = []
     order = {point.name: at for at, point in enumerate(points)}
-    tables = lru_cache(TABLES)(program.table)
+    tables = lru_cache(TABLES)(run_table)
     before, took = 0.0, 0.0
 
     def write() -> None:
@@ -48,7 +48,7 @@ def run_points(
         nonlocal before, took
         begun = time.monotonic()
         ends.sort(key=lambda one: order[one.point.name])
-        sweep_files.write(campaign.folder, command, ends, rows or columns_at_end(program, ends), tables, points)
+        sweep_files.write(campaign.folder, command, ends, rows or columns_at_end(ends), tables, points)
         before = time.monotonic()
         took = before - begun
 
@@ -109,10 +109,12 @@ def expected(scene: Path) -> list[dict[str, Any]]:
     return readable
 
 
-def columns_at_end(program: Program, ends: Sequence[Ended]) -> list[dict[str, Any]]:
+def columns_at_end(ends: Sequence[Ended]) -> list[dict[str, Any]]:
     """How every column of the series ends, in the first point that has one."""
+    from porescale.common.record.series import run_table
+
     for ended in ends:
         if ended.outcome == "finished":
-            names = list(program.table(ended.folder, "series"))[1:]
+            names = list(run_table(ended.folder, "series"))[1:]
             return [{"name": name, "column": name, "at": "end"} for name in names]
     return []

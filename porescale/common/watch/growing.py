@@ -151,8 +151,8 @@ class Growing:
         return max((path.stat().st_mtime for name in places if (path := self.folder / name).exists()), default=0.0)
 
 
-def last_value(path: Path, column: str = TIME) -> float | None:
-    """The last number in a column of a table that may be growing; None where there is no whole row."""
+def last_value(path: Path) -> float | None:
+    """The last time in a table that may be growing; None where there is no whole row."""
     import csv
 
     try:
@@ -163,6 +163,6 @@ def last_value(path: Path, column: str = TIME) -> float | None:
             rows = file.read()
         last = rows.rpartition(b"\n")[0].rpartition(b"\n")[2]
         names, cells = (next(csv.reader([line.decode()]), []) for line in (head, last))
-        return float(cells[names.index(column)]) if len(cells) == len(names) else None
+        return float(cells[names.index(TIME)]) if len(cells) == len(names) else None
     except (OSError, ValueError):
         return None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.page.frames import frame
 from porescale.common.page.meta import frames_of, meta, shown
+from porescale.common.page.page import compact
 from porescale.common.page.quantise import Precision
 from porescale.common.page.tables import names, table
 from porescale.common.page.texts import verdicts
@@ -153,5 +153,4 @@ def page(kind: str, name: str) -> Answer:
 
 def _json(value: Any) -> Answer:
     """``value`` as JSON that browsers read."""
-    text = json.dumps(plain(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return Answer(text.encode(), "application/json")
+    return Answer(compact(plain(value)).encode(), "application/json")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from base64 import b64encode
 from html import escape
 from pathlib import Path
@@ -11,7 +10,7 @@ from urllib.parse import quote
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import InputError
-from porescale.common.page.page import NAME
+from porescale.common.page.page import NAME, compact
 from porescale.common.page.scripts import filled
 from porescale.common.page.tables import table
 from porescale.common.record.card import plain
@@ -28,7 +27,7 @@ def write_sweep_report(folder: Path, program: Program, path: Path | None = None)
     Points that have a page of their own are linked to, where it lies.
     """
     target = folder / NAME if path is None else path
-    text = json.dumps(plain(_data(Points(folder, program), target)), separators=(",", ":"), ensure_ascii=False)
+    text = compact(plain(_data(Points(folder, program), target)))
     start = (
         f"const data = {text.replace('<', chr(92) + 'u003c')};\nawait openSweep(page, page.dataset.title, held(data));"
     )

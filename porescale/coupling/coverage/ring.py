@@ -21,8 +21,8 @@ class Ring(Shape):
     The whole box is its patch, filled anew only when it has moved: spinning costs nothing.
     """
 
-    def __init__(self, centre: ArrayLike, radius: float, velocity: ArrayLike = (0.0, 0.0), spin: float = 0.0) -> None:
-        super().__init__(velocity, spin)
+    def __init__(self, centre: ArrayLike, radius: float, spin: float = 0.0) -> None:
+        super().__init__(spin=spin)
         self._centre = np.array(centre, float)
         self.radius = self.hole = float(radius)
         if self._centre.shape != (2,) or not radius > 1:

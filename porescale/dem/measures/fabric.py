@@ -1,4 +1,4 @@
-"""Contacts of a region: coordination, rattlers, fabric, and where contacts point."""
+"""Contacts of a region: coordination, rattlers and fabric."""
 
 from typing import NamedTuple
 
@@ -87,20 +87,6 @@ def fabric(contacts: Contacts, region: Region, period: Period = (0.0, 0.0)) -> F
     tensor = np.einsum("ca,cb->ab", chosen.normal, chosen.normal) / chosen.count
     _, half, angle = principal(tensor)
     return Fabric(np.asarray(tensor), 4.0 * half, angle, chosen.count)
-
-
-def rose(contacts: Contacts, bins: int = 36, weight: Floats | None = None) -> tuple[Floats, Floats]:
-    """(edges (bins + 1,) rad from 0 to 2 pi, probability density per rad (bins,)) of the directions of contacts.
-
-    Every contact counts in both directions;  weight (c,): normal forces, for the directions of force instead.
-    """
-    angle = np.arctan2(contacts.normal[:, 1], contacts.normal[:, 0])
-    both = np.concatenate((angle, angle + np.pi)) % (2.0 * np.pi)
-    twice = None if weight is None else np.concatenate((weight, weight))
-    edges = np.linspace(0.0, 2.0 * np.pi, bins + 1)
-    counted, _ = np.histogram(both, edges, weights=twice)
-    total = counted.sum()
-    return edges, counted / (total if total > 0 else 1.0) / np.diff(edges)
 
 
 def _per_disc(contacts: Contacts, alive: Mask, count: int) -> NDArray[np.int64]:

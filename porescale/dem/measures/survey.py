@@ -7,13 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.common.compiled.jit import inline, kernel
+from porescale.common.compiled.jit import kernel
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.bodies.rigid import clumps_of
-from porescale.dem.contact.law import load_history, material_of, stored
 from porescale.dem.discs import Discs
-from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, nearest_face
+from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP
 from porescale.dem.forces.segments import survey_segments
 from porescale.dem.forces.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
 from porescale.dem.motion.periodic_cell import image
@@ -21,15 +20,14 @@ from porescale.dem.state import State
 
 
 @kernel
-def survey_pairs(d, pairs, cell, law, touching):
-    """(largest overlap over the smaller radius, its i, its j, elastic energy J/m) over the listed pairs.
+def survey_pairs(position, radius, pairs, cell, touching):
+    """(largest overlap over the smaller radius, its i, its j) over the listed pairs.
 
-    d: DiscArrays;  pairs: Pairs.  Overwrites touching (n,): number of discs that touch each disc.
+    position (n, 2), radius (n,) m;  pairs: Pairs.  Overwrites touching (n,): number of discs that touch each disc.
     """
     touching[:] = 0
-    position, radius, material = d.position, d.radius, d.material
-    start, partner, history = pairs.start, pairs.partner, pairs.history
-    worst, worst_i, worst_j, energy = 0.0, -1, -1, 0.0
+    start, partner = pairs.start, pairs.partner
+    worst, worst_i, worst_j = 0.0, -1, -1
     for i in range(radius.shape[0]):
         for k in range(start[i], start[i + 1]):
             j = partner[k]
@@ -38,84 +36,14 @@ def survey_pairs(d, pairs, cell, law, touching):
             if overlap > 0.0:
                 touching[i] += 1
                 touching[j] += 1
-                p = law.table[material_of(material, i), material_of(material, j)]
-                spring, roll = load_history(history, k, law)
-                reduced = radius[i] * radius[j] / (radius[i] + radius[j])
-                normal, tangential, rolling = stored(overlap, spring, roll, reduced, p, law)
-                energy += normal + tangential + rolling
                 share = overlap / min(radius[i], radius[j])
                 if share > worst:
                     worst, worst_i, worst_j = share, i, j
-    return worst, worst_i, worst_j, energy
+    return worst, worst_i, worst_j
 
 
-@inline
-def stored_at_surface(i, overlap, radius, material, memory, laws, law):
-    """Elastic energy (J/m) of disc i against a surface; arguments as in walls.surface_contact."""
-    spring, roll = load_history(memory, i, law)
-    normal, tangential, rolling = stored(overlap, spring, roll, radius, laws[material_of(material, i)], law)
-    return normal + tangential + rolling
-
-
-@kernel
-def survey_walls(d, walls, laws, spring, law):
-    """(largest overlap over the radius, its disc, its wall, elastic energy J/m) over walls (w, 4)."""
-    position, radius, material = d.position, d.radius, d.material
-    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
-    for w in range(walls.shape[0]):
-        for i in range(radius.shape[0]):
-            distance = (position[i, 0] - walls[w, PX]) * walls[w, NX]
-            distance += (position[i, 1] - walls[w, PY]) * walls[w, NY]
-            overlap = radius[i] - distance
-            if overlap > 0.0:
-                energy += stored_at_surface(i, overlap, radius[i], material, spring[w], laws[w], law)
-                if overlap / radius[i] > worst:
-                    worst, worst_i, worst_w = overlap / radius[i], i, w
-    return worst, worst_i, worst_w, energy
-
-
-@kernel
-def survey_plates(d, plates, laws, spring, law):
-    """(largest overlap over the radius, its disc, its plate, elastic energy J/m) over the plates (p, 5) present."""
-    position, radius, material = d.position, d.radius, d.material
-    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
-    for w in range(plates.shape[0]):
-        if plates[w, PRESENT] != 0.0:
-            for i in range(radius.shape[0]):
-                dx = plates[w, X] - position[i, 0]
-                dy = min(max(position[i, 1], plates[w, LOW]), plates[w, HIGH]) - position[i, 1]
-                overlap = radius[i] - np.sqrt(dx * dx + dy * dy)
-                if overlap > 0.0:
-                    energy += stored_at_surface(i, overlap, radius[i], material, spring[w], laws[w], law)
-                    if overlap / radius[i] > worst:
-                        worst, worst_i, worst_w = overlap / radius[i], i, w
-    return worst, worst_i, worst_w, energy
-
-
-@kernel
-def survey_rectangles(d, rectangles, laws, spring, law):
-    """(largest overlap over the radius, its disc, its rectangle, elastic energy J/m) over the rectangles (k, 6)."""
-    position, radius, material = d.position, d.radius, d.material
-    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
-    for w in range(rectangles.shape[0]):
-        left, bottom = rectangles[w, LEFT], rectangles[w, BOTTOM]
-        right, top = rectangles[w, RIGHT], rectangles[w, TOP]
-        for i in range(radius.shape[0]):
-            dx = min(max(position[i, 0], left), right) - position[i, 0]
-            dy = min(max(position[i, 1], bottom), top) - position[i, 1]
-            distance = np.sqrt(dx * dx + dy * dy)
-            if distance == 0.0:
-                distance = -nearest_face(position[i, 0], position[i, 1], left, bottom, right, top)[2]
-            overlap = radius[i] - distance
-            if overlap > 0.0:
-                energy += stored_at_surface(i, overlap, radius[i], material, spring[w], laws[w], law)
-                if overlap / radius[i] > worst:
-                    worst, worst_i, worst_w = overlap / radius[i], i, w
-    return worst, worst_i, worst_w, energy
-
-
-Found = tuple[float, int, int, float]
-"""Deepest overlap over the (smaller) radius, its disc, the disc or surface that it touches, elastic energy J/m."""
+Found = tuple[float, int, int]
+"""Deepest overlap over the (smaller) radius, its disc, the disc or surface that it touches; 0, -1, -1 for none."""
 
 
 class Overlap(NamedTuple):
@@ -132,12 +60,6 @@ def kinetic_energy(discs: Discs) -> float:
     """Kinetic energy of translation and rotation, J/m."""
     moving = float(np.sum(discs.mass * np.sum(discs.velocity**2, axis=1)))
     return 0.5 * (moving + float(np.sum(discs.inertia * discs.spin**2)))
-
-
-def elastic_energy(grains: State) -> float:
-    """Stored in the normal and tangential springs of pairs, walls, plates, rectangles and segments, J/m."""
-    surfaces = sum(found[3] for found in _survey_surfaces(grains))
-    return float(_survey(grains)[3] + surfaces + sum(_survey_segments(grains)[3:]))
 
 
 def momentum(discs: Discs) -> Floats:
@@ -163,13 +85,13 @@ def max_overlap(grains: State) -> Overlap:
     """The deepest overlap of all pairs, walls, plates, rectangles and segments, as a share of the (smaller) radius; at
     segments and corners of the sum of radius and thickness, where a disc would go through.
     """
-    share, i, j, _ = _survey(grains)
+    share, i, j = _survey(grains)
     found = [(share, i, name_of(grains, j), j)]
     walls, plates = [f"the {name} wall" for name in grains.wall_names], [f"the {name}" for name in grains.plate_names]
     names = walls, plates, [f"rectangle {k}" for k in range(len(grains.rectangles))]
-    for (share, i, w, _), own in zip(_survey_surfaces(grains), names, strict=True):
+    for (share, i, w), own in zip(_survey_surfaces(grains), names, strict=True):
         found.append((share, i, own[w] if own else "", -1))
-    share, i, e, *_ = _survey_segments(grains)
+    share, i, e = _survey_segments(grains)
     found.append((share, i, f"segment {e}" if e >= 0 else f"corner {e + grains.discs.count}", -1))
     share, i, against, j = max(found, key=lambda each: each[0])  # the first of the deepest
     return Overlap(float(share), int(i), against, int(j))
@@ -203,34 +125,55 @@ def unbalanced(grains: State, free: int | None = None) -> float:
 
 def _survey(grains: State) -> Found:
     """Result of survey_pairs for ``grains``; overwrites ``grains.touching``."""
-    result: Found = survey_pairs(
-        grains.disc_arrays(), grains.pair_arrays(), grains.cell, grains.contact, grains.touching
-    )
+    d = grains.discs
+    result: Found = survey_pairs(d.position, d.radius, grains.pair_arrays(), grains.cell, grains.touching)
     return result
 
 
 def _survey_surfaces(grains: State) -> list[Found]:
-    """What is found at walls, plates and rectangles, nothing where there is none; corners of segments at walls by their
-    own measure."""
-    d, found = grains.discs, list[Found]()
-    for kind, survey in (("wall", survey_walls), ("plate", survey_plates), ("rectangle", survey_rectangles)):
-        table, laws, spring, _ = grains.surface(kind)
-        none = 0.0, -1, -1, 0.0
-        found.append(survey(grains.disc_arrays(), table, laws, spring, grains.contact) if len(table) else none)
-    if grains.segments is not None and len(grains.walls):
+    """What is found at walls, plates and rectangles; corners of segments at walls by their own measure."""
+    d, walls = grains.discs, grains.walls
+    found = [_deepest(d.radius - away, d.radius) for away in distances(grains)]
+    if grains.segments is not None and len(walls):
         # Corners may be points: what they go into a wall is held against their segments.
-        away = np.einsum("nwk,wk->wn", d.position[:, None] - grains.walls[:, PX : PY + 1], grains.walls[:, NX : NY + 1])
-        share = (d.radius - away) / np.maximum(d.radius, grains.segments.beside_corner)
-        w, i = np.unravel_index(share.argmax(), share.shape)
-        found[0] = float(share[w, i]), int(i), int(w), found[0][3]
+        away = np.einsum("nwk,wk->wn", d.position[:, None] - walls[:, PX : PY + 1], walls[:, NX : NY + 1])
+        found[0] = _deepest(d.radius - away, np.maximum(d.radius, grains.segments.beside_corner))
     return found
 
 
-def _survey_segments(grains: State) -> tuple[float, int, int, float, float, float]:
+def distances(grains: State) -> tuple[Floats, Floats, Floats]:
+    """Distances of all centres (n,) from walls, plates and rectangles, (surfaces, n) m each.
+
+    Below zero behind walls and inside of rectangles, infinite from plates that are gone.
+    """
+    x, y = grains.discs.position.T
+    walls, plates, rectangles = (table[:, :, None] for table in (grains.walls, grains.plates, grains.rectangles))
+    behind = (x - walls[:, PX]) * walls[:, NX] + (y - walls[:, PY]) * walls[:, NY]
+    dx, dy = plates[:, X] - x, np.clip(y, plates[:, LOW], plates[:, HIGH]) - y
+    beside = np.where(plates[:, PRESENT] != 0.0, np.sqrt(dx * dx + dy * dy), np.inf)
+    left, bottom, right, top = (rectangles[:, side] for side in (LEFT, BOTTOM, RIGHT, TOP))
+    dx, dy = np.clip(x, left, right) - x, np.clip(y, bottom, top) - y
+    outside = np.sqrt(dx * dx + dy * dy)
+    inside = np.minimum(np.minimum(x - left, right - x), np.minimum(y - bottom, top - y))
+    return behind, beside, np.where(outside == 0.0, -inside, outside)
+
+
+def _deepest(overlap: Floats, reach: Floats) -> Found:
+    """The first of the deepest of ``overlap`` (surfaces, n) m over ``reach`` (n,) m."""
+    with np.errstate(divide="ignore"):  # corners that are points
+        share = np.divide(overlap, reach, out=np.zeros_like(overlap), where=overlap > 0.0)
+    if not share.any():
+        return 0.0, -1, -1
+    surface, disc = np.unravel_index(share.argmax(), share.shape)
+    return float(share[surface, disc]), int(disc), int(surface)
+
+
+def _survey_segments(grains: State) -> Found:
+    """The deepest contact with a segment, -1 for one of two corners, see segments.survey_segments."""
     d = grains.discs
     if grains.segments is None:
-        return 0.0, -1, 0, 0.0, 0.0, 0.0
-    result: tuple[float, int, int, float, float, float] = survey_segments(
+        return 0.0, -1, 0
+    share, i, e = survey_segments(
         d.position, d.radius, grains.material, segments_now(grains), grains.contact, grains.cell
-    )
-    return result
+    )[:3]
+    return share, i, e

@@ -15,8 +15,6 @@ from porescale.dem.motion.periodic_cell import LOAD, Still, Straining
 from porescale.dem.motion.rigid_and_driven import FIRST_CONTROL, DriverArrays
 from porescale.dem.motion.time_function import Schedule, schedule_rows
 
-AXES = ("x", "y", "rotation")
-
 
 class Clump(NamedTuple):
     """A clump by its number, where a body is named; a plain number names a disc."""

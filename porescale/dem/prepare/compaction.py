@@ -8,14 +8,13 @@ Files hold x, y, radius in m: .csv, one disc a line below its header, or .h5, th
 circles is read with its own units and direction of y by ``read_circles``.
 """
 
-import contextlib
 import csv
 import dataclasses
 import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,7 +32,7 @@ from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, principal
 from porescale.dem.measures.survey import max_overlap
 from porescale.dem.prepare.obstacles import NOTHING, Obstacles
-from porescale.dem.prepare.settle import UNREADABLE, cached_at, pack, unpack
+from porescale.dem.prepare.on_disk import once
 
 START = 0.7  # packing fraction at which discs are placed: short of where friction can hold them
 DRAG = 0.02  # background damping per step: lets discs that are pushed travel, ends waves between two looks
@@ -227,21 +226,23 @@ class Compactor:
 def kept(press: Compactor, radius: Floats, pressure: float | None, folder: Path | None = None) -> Compressed:
     """``press.to_pressure``, or ``to_size`` without one; from disk if it was made before, with the bits it had.
 
-    folder : of the cache, default that of settled packings.  A damaged file is made anew, a folder that cannot be
-    written is done without.
+    folder : as of `once`.
     """
-    path = cached_at([dataclasses.asdict(press), np.asarray(radius).tolist(), pressure], folder)
-    with contextlib.suppress(*UNREADABLE):
-        state = unpack(path)
+
+    def read(state: dict[str, Any]) -> Compressed:
+        """The grains of a state that was kept."""
         grains = press.grains(np.array(state["discs"]["position"])[: len(radius)], radius)
         grains.set_law(press.law, press.law)
         grains.restore(state)
-        numbers = state["made"]
-        return Compressed(grains, *(float(numbers[key]) for key in Compressed._fields[1:]))
-    made = press.to_size(radius) if pressure is None else press.to_pressure(radius, pressure)
-    with contextlib.suppress(OSError):  # no room or no right to write: the next run presses again
-        pack(path, {**made.grains.state(), "made": dict(zip(Compressed._fields[1:], made[1:], strict=True))})
-    return made
+        return Compressed(grains, *(float(state["made"][key]) for key in Compressed._fields[1:]))
+
+    return once(
+        [dataclasses.asdict(press), np.asarray(radius).tolist(), pressure],
+        read,
+        lambda: press.to_size(radius) if pressure is None else press.to_pressure(radius, pressure),
+        lambda made: {**made.grains.state(), "made": dict(zip(Compressed._fields[1:], made[1:], strict=True))},
+        folder,
+    )
 
 
 def mean_stress(grains: Grains) -> float:

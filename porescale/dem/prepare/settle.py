@@ -2,17 +2,11 @@
 
 Settling is a means, not a simulation: it uses a stiff, well damped law of its own and a background drag
 -gamma m v, both stated here and gone afterwards.  ``relax`` then finds the equilibrium under the law and
-weights of the run, so that nothing jumps at its first step.  A packing is kept on disk under a hash of all
-that made it.
+weights of the run, so that nothing jumps at its first step.
 """
 
-import contextlib
 import dataclasses
-import hashlib
-import io
-import json
 import math
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,8 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from porescale.common.compiled.cache import cache_root, hash_of
-from porescale.common.core.atomic import write_bytes
 from porescale.common.core.constants import EDGE, GRAVITY
 from porescale.common.core.errors import Fault, InputError, PorescaleError
 from porescale.common.core.types import Floats
@@ -33,6 +25,7 @@ from porescale.dem.forces.walls import HIGH, LOW, VELOCITY, Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import kinetic_energy, max_overlap, unbalanced
 from porescale.dem.prepare.obstacles import NOTHING, Obstacles
+from porescale.dem.prepare.on_disk import once
 from porescale.dem.timestep import stable_step
 
 OVERLAP = 1e-3  # of a diameter: deepest overlap left by settling, so that the geometry is that of hard discs
@@ -51,8 +44,6 @@ WEDGED = ": gaps beside what stands there that are about as wide as a grain wedg
 """What is said where grains do not come to rest among obstacles."""
 LOOSER = (1.0, 0.9, 0.8, 0.7)
 """Of the fraction of a pile, at which it is placed among obstacles: pores at their rims are wide."""
-UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile, InputError)
-"""What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""
 
 
 @dataclass(frozen=True)
@@ -281,39 +272,38 @@ def prepare(
     plates: Sequence[Plate] = (),
     weight_density: float | None = None,
     folder: Path | None = None,
-    cache: bool = True,
 ) -> Grains:
     """Grains of ``pile`` at rest in ``box`` behind ``plates`` under the run's ``law`` and weights; from
     disk if known.
 
     weight_density (kg/m^3): weights are weight_density * area * gravity, downwards; the density of the
-    grains by default, density difference to a fluid for buoyant ones.  folder: of the cache, default
-    $XDG_CACHE_HOME/porescale/packings.  What is loaded has the bits of what was made; a damaged file is made
-    anew, and a folder that cannot be written is done without.  Raises InputError when the weight is not
-    downwards, or when no side or plate holds the pile.
+    grains by default, density difference to a fluid for buoyant ones.  folder: as of `once`.  Raises
+    InputError when the weight is not downwards, or when no side or plate holds the pile.
     """
     assert not pile.around  # among.py prepares that
     weighs = weight_per_area(pile, weight_density)
-    grains = Grains(pile.discs(), law, box, wall_law=wall_law, plates=plates)
-    made_of: list[Any] = [pile, box, law, grains.wall_law, *plates]
-    path = cached_at([*(dataclasses.asdict(part) for part in made_of), weighs], folder)
-    if cache:
-        try:
-            grains.restore(unpack(path))
-        except UNREADABLE:
-            grains = Grains(pile.discs(), law, box, wall_law=wall_law, plates=plates)  # some of it may be overwritten
-        else:
-            return grains
-    settle(grains, pile)
-    relax(
-        grains, law, weights_of(grains.discs, weighs, pile.gravity), pile.gravity * weighs / pile.density,
-        wall_law=wall_law,
-    )  # fmt: skip
-    grains.reset_clock()
-    if cache:
-        with contextlib.suppress(OSError):  # no room or no right to write: the next run settles again
-            pack(path, grains.state())
-    return grains
+
+    def start() -> Grains:
+        """The grains as they are placed."""
+        return Grains(pile.discs(), law, box, wall_law=wall_law, plates=plates)
+
+    def read(state: dict[str, Any]) -> Grains:
+        """The grains of a state that was kept."""
+        grains = start()
+        grains.restore(state)
+        return grains
+
+    def make() -> Grains:
+        """The grains at rest."""
+        grains = start()
+        settle(grains, pile)
+        weights = weights_of(grains.discs, weighs, pile.gravity)
+        relax(grains, law, weights, pile.gravity * weighs / pile.density, wall_law=wall_law)
+        grains.reset_clock()
+        return grains
+
+    made_of: list[Any] = [pile, box, law, wall_law or law, *plates]
+    return once([*(dataclasses.asdict(part) for part in made_of), weighs], read, make, Grains.state, folder)
 
 
 def weight_per_area(pile: Pile, weight_density: float | None) -> float:
@@ -332,39 +322,3 @@ def weights_of(discs: Discs, density: float, gravity: float = GRAVITY) -> Floats
     weights = np.zeros((discs.count, 2))
     weights[:, 1] = -density * gravity * discs.area
     return weights
-
-
-def cached_at(made_of: list[Any], folder: Path | None) -> Path:
-    """File of the packing that is made of these numbers and the sources; ``folder`` None: that of all packings."""
-    name = hashlib.sha256(json.dumps([*made_of, sources()]).encode()).hexdigest()[:16]
-    return (folder or cache_root() / "packings") / f"{name}.npz"
-
-
-def sources() -> str:
-    """Hash (12 hex digits) of the sources a packing depends on: grains, particles and ground."""
-    root = Path(__file__).resolve().parents[2]
-    return hash_of(root / room for room in ("dem", "common/neighbors", "common/core", "common/compiled"))
-
-
-def pack(path: Path, state: dict[str, Any]) -> None:
-    """Write a nested ``state`` of arrays and numbers to ``path``: whole or absent.  Raises OSError."""
-    flat: dict[str, Any] = {}
-    for key, value in state.items():
-        for inner, part in value.items() if isinstance(value, dict) else [("", value)]:
-            flat[f"{key}/{inner}" if inner else key] = np.asarray(part)
-    buffer = io.BytesIO()
-    np.savez(buffer, **flat)
-    write_bytes(path, buffer.getvalue())
-
-
-def unpack(path: Path) -> dict[str, Any]:
-    """Read what ``pack`` wrote; raises one of UNREADABLE where it is not that."""
-    state: dict[str, Any] = {}
-    with np.load(path, allow_pickle=False) as stored:
-        for name in stored.files:
-            key, _, inner = name.partition("/")
-            if inner:
-                state.setdefault(key, {})[inner] = stored[name]
-            else:
-                state[key] = stored[name]
-    return state

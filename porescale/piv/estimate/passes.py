@@ -4,7 +4,7 @@ Both pictures are deformed by half the last estimate each (symmetric window defo
 Technol. 13, R1), so that what is left to measure is small, and interpolation errs alike in both.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -16,8 +16,6 @@ from porescale.common.core.types import Floats, Singles
 from porescale.piv.estimate.correlate import Layout, correlation, peaks
 from porescale.piv.estimate.grid import Grid, spread
 from porescale.piv.images.prepare import Ready
-
-Pairs = Sequence[tuple[Ready, Ready]]
 
 LEAST_WINDOW = 16
 """Windows, px of the picture they are cut from, are correlated no smaller: fewer tracers match by chance."""

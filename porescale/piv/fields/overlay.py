@@ -17,14 +17,16 @@ COLOURS = {"valid": (255, 213, 74), "replaced": (217, 95, 2)}
 """RGB colours of the arrows, by kind of vector."""
 APART = 16
 """Pixels between arrows, at least."""
+RATE = 10
+"""Frames a second."""
 SHIFT = 4
 """OpenCV coordinates in sixteenths of a pixel."""
 
 
-def overlay_film(folder: Path, film: Film, span: tuple[float, ...], rate: int = 10) -> Path:
+def overlay_film(folder: Path, film: Film, span: tuple[float, ...]) -> Path:
     """Write overlay.mp4 into ``folder``, whose piv.vtkhdf has a field for each pair of ``film``; gives its path.
 
-    span : left, right, bottom, top of the pictures in the fields' units;  rate : frames a second.  Arrows have one
+    span : left, right, bottom, top of the pictures in the fields' units.  Arrows have one
     length a speed, the first field's fastest (98 %) somewhat longer than two arrows are apart.
     """
 
@@ -37,7 +39,7 @@ def overlay_film(folder: Path, film: Film, span: tuple[float, ...], rate: int = 
                 fast = float(np.percentile(speed, 98)) if speed.size else 0.0
             yield painting(image, field, span, fast)
 
-    return write_film(folder / "overlay", painted(), rate)
+    return write_film(folder / "overlay", painted(), RATE)
 
 
 def painting(image: NDArray[Any], field: Field, span: tuple[float, ...], fast: float) -> NDArray[np.uint8]:

@@ -77,7 +77,7 @@ def closing(
 def films() -> Measured:
     """Force over the law's at gaps of 0.2, 0.3, 0.5 and 1 cell, radius 10, and the same with radius 5."""
     found = [
-        near_wall("towards", cells / radius, radius, lubrication=True) / jeffrey_onishi("towards", cells / radius)
+        near_wall("towards", cells / radius, radius, lubrication=True) / jeffrey_onishi(cells / radius)
         for radius in (10.0, SMALL)
         for cells in AT_A_WALL
     ]
@@ -153,7 +153,7 @@ def sinking(*, lubrication: bool = True) -> float:
     )  # fmt: skip
     gaps = np.linspace(*SINKS, 101)
     weight = (density - 1) * math.pi * radius**2 * -fall[1]
-    exact = np.trapezoid([jeffrey_onishi("towards", gap / radius) for gap in gaps], -gaps) * viscosity(TAU) / weight
+    exact = np.trapezoid([jeffrey_onishi(gap / radius) for gap in gaps], -gaps) * viscosity(TAU) / weight
     steps = []
     with one_thread():
         for gap in SINKS:

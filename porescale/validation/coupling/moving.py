@@ -90,7 +90,6 @@ def shear_spin(
     reynolds: float = 0.01,
     density: float = 1.0,
     place: tuple[float, float] = (0.3, 0.0),
-    method: Method = DEFAULT,
 ) -> float:
     """Spin over the shear rate of a free disc midway between walls that move apart, diameter over their distance given.
 
@@ -105,7 +104,6 @@ def shear_spin(
     centre = cells[0] / 2 + place[0], height / 2 + place[1]
     coupled = towed(
         cells, [centre], diameter / 2, spin=-rate / 2, relaxation_time=relaxation_time, sides=sides, density=density,
-        method=method,
     )  # fmt: skip
     y = np.arange(height)[:, None] + 0.5 - height / 2
     coupled.fluid.set_flow(rate * y * np.ones(cells[0]), 0.0)
@@ -121,7 +119,6 @@ def stream_drag(
     relaxation_time: float = TAU,
     speed: float = 0.02,
     steps: int = 2000,
-    method: Method = DEFAULT,
 ) -> Reals:
     """Drag on a disc that enters fluid at ``speed`` in a periodic box of six diameters, (steps,).
 
@@ -130,7 +127,7 @@ def stream_drag(
     cells = round(6 * diameter)
     coupled = towed(
         (cells, cells), [(cells / 2, cells / 2)], diameter / 2, (-frame * speed, 0.0), relaxation_time=relaxation_time,
-        sides=PERIODIC, method=method,
+        sides=PERIODIC,
     )  # fmt: skip
     coupled.fluid.set_flow((1 - frame) * speed, 0.0)
     coupled.inner_velocity[:] = coupled.grains.discs.velocity
@@ -150,7 +147,6 @@ def settled_speed(
     relaxation_time: float = TAU,
     speed: float = 1e-4,
     gravity_in_fluid: bool = False,
-    method: Method = DEFAULT,
 ) -> float:
     """Speed over the expected one of a free disc of density ``ratio`` that sinks or rises in a closed channel.
 
@@ -166,7 +162,7 @@ def settled_speed(
         """The speed a disc settles at, or the load on one that is held, in cells and steps."""
         coupled = immersed(
             cells, [(width / 2, cells[1] / 2 + 0.3)], a, ratio, relaxation_time=relaxation_time,
-            acceleration=(0.0, 0.0 if held else -g), force=(0.0, -g if pulled else 0.0), method=method,
+            acceleration=(0.0, 0.0 if held else -g), force=(0.0, -g if pulled else 0.0),
         )  # fmt: skip
         if pulled:  # start with the pressure of water at rest
             depth = cells[1] / 2 - 0.5 - np.arange(cells[1])
@@ -190,7 +186,6 @@ def kiss(
     *,
     relaxation_time: float = 0.512,
     density_ratio: float = 1.5,
-    method: Method = DEFAULT,
 ) -> tuple[float, Reals]:
     """Time (s) at which two falling discs first touch, and their places then (2, 2) in diameters.
 
@@ -204,7 +199,7 @@ def kiss(
     place = [(4 * diameter + offset, 20 * diameter), (4 * diameter - offset, 18 * diameter)]
     coupled = immersed(
         (8 * cells_per_diameter, 24 * cells_per_diameter), place, diameter / 2, 1000 * density_ratio,
-        acceleration=(0.0, -9.81), scales=Scales(spacing, step, relaxation_time), method=method,
+        acceleration=(0.0, -9.81), scales=Scales(spacing, step, relaxation_time),
     )  # fmt: skip
     at, time, gap = coupled.grains.discs.position, 0.0, diameter
     with one_thread():
@@ -230,7 +225,7 @@ def approach(
     Box 12 by 6 radii, lattice units; released 1.2 radii up, so slowly that the flow follows.
     """  # fmt: skip
     nu = viscosity(relaxation_time)
-    weight = 2e-3 * nu**2 * jeffrey_onishi("towards", 1.0)  # a Reynolds number of 0.002 or so
+    weight = 2e-3 * nu**2 * jeffrey_onishi(1.0)  # a Reynolds number of 0.002 or so
     g = weight / ((ratio - 1) * np.pi * radius**2)
     coupled = immersed(
         (round(12 * radius), round(6 * radius)), [(6 * radius + 0.3, 2.0 * radius)], radius, ratio,
@@ -358,7 +353,7 @@ def gravity() -> Measured:
 def approach_row() -> Measured:
     """Speed over the law's at gaps of 0.6, 0.4 and 0.3 radii; radius 10 cells, density ratio 2, tau 0.6."""
     gaps = (0.6, 0.4, 0.3)
-    found = [v * jeffrey_onishi("towards", gap) for v, gap in zip(approach(gaps), gaps, strict=True)]
+    found = [v * jeffrey_onishi(gap) for v, gap in zip(approach(gaps), gaps, strict=True)]
     return Measured.absolute([1.0] * len(found), found)
 
 

@@ -17,7 +17,7 @@ from porescale.lbm.lattice import viscosity
 from porescale.lbm.scales import Scales
 from porescale.validation.coupling import setups
 from porescale.validation.coupling.polygons import ellipse, plate, regular
-from porescale.validation.coupling.setups import DEFAULT, LAW, TAU, Method, in_box, lattice_units
+from porescale.validation.coupling.setups import LAW, TAU, in_box, lattice_units
 from porescale.validation.lbm.channels import one_thread, run
 
 EPS = float(np.finfo(float).eps)
@@ -40,7 +40,6 @@ def immersed_polygons(
     sides: tuple[Kind, Kind] = ("wall", "wall"),
     acceleration: tuple[float, float] = (0.0, 0.0),
     scales: Scales | None = None,
-    method: Method = DEFAULT,
     thickness: float = THICKNESS,
     contact_steps: int = 4,
 ) -> Coupled:
@@ -58,7 +57,7 @@ def immersed_polygons(
         for n, each in enumerate(corners)
     ]  # fmt: skip
     return in_box(
-        cells, lambda box: framed(discs, frames, LAW, box), scales, sides, method=method, contact_steps=contact_steps,
+        cells, lambda box: framed(discs, frames, LAW, box), scales, sides, contact_steps=contact_steps,
         acceleration=acceleration,
     )  # fmt: skip
 

@@ -22,9 +22,7 @@ TIMES = (0.05, 0.1, 0.2, 0.5)  # nu t/a²
 RATIOS = (1.5, 2.5, 7.8)
 
 
-def settling_disc(
-    cells_per_diameter: int = 16, relaxation_time: float = 0.65, ratio: float = 1.0, method: Method = DEFAULT
-) -> float:
+def settling_disc(cells_per_diameter: int = 16, relaxation_time: float = 0.65, ratio: float = 1.0) -> float:
     """Largest speed (m/s) of the disc of Glowinski et al. 2001 before it is within a diameter of the bottom.
 
     Box 2 x 6 cm, d 0.25 cm, density ratio 1.25, nu 0.1 cm²/s, g 9.81 m/s², released at (1, 4) cm.  The step follows
@@ -37,7 +35,7 @@ def settling_disc(
     cells = round(0.02 / spacing), round(0.06 / spacing)
     coupled = immersed(
         cells, [(0.01, 0.04)], diameter / 2, 1250.0, acceleration=(0.0, -9.81), ratio=ratio,
-        scales=Scales(spacing, step, relaxation_time), method=method,
+        scales=Scales(spacing, step, relaxation_time),
     )  # fmt: skip
     discs, fastest = coupled.grains.discs, 0.0
     while discs.position[0, 1] > 1.5 * diameter:
@@ -169,7 +167,6 @@ def spin_down(
     relaxation_time: float = 0.56,
     width: float = 8.0,
     inner_mass: bool = True,
-    method: Method = DEFAULT,
 ) -> list[float]:
     """Spin over its first value of a disc set spinning in fluid at rest, at ``times`` nu t/a².
 
@@ -179,7 +176,7 @@ def spin_down(
     n = round(width * diameter)
     x0, y0 = n / 2 + 0.3, n / 2 + 0.1
     first = 1e-4 / a
-    coupled = immersed((n, n), [(x0, y0)], a, ratio, 0.0, first, relaxation_time=relaxation_time, method=method)
+    coupled = immersed((n, n), [(x0, y0)], a, ratio, 0.0, first, relaxation_time=relaxation_time)
     if not inner_mass:
         without_inner_mass(coupled)
     _, _, _, solid = coupled.fields()

@@ -147,7 +147,6 @@ def channel_drag(
     *,
     relaxation_time: float = TAU,
     place: tuple[float, float] = (0.3, 0.0),
-    method: Method = DEFAULT,
 ) -> tuple[float, float]:
     """Drag F/(mu U) of a disc towed midway between walls at rest, and the blockage k = a/h that whole cells allow.
 
@@ -157,7 +156,7 @@ def channel_drag(
     cells = 4 * height, height
     coupled = towed(
         cells, [(cells[0] / 2 + place[0], height / 2 + place[1])], diameter / 2, (SLOW, 0.0),
-        relaxation_time=relaxation_time, method=method,
+        relaxation_time=relaxation_time,
     )  # fmt: skip
     nu = viscosity(relaxation_time)
     force = steady(coupled, lambda: float(coupled.fluid_force[0, 0]), (height / (2 * math.pi)) ** 2 / nu)
@@ -172,7 +171,6 @@ def near_wall(
     across: float = 12.0,
     relaxation_time: float = TAU,
     lubrication: bool = False,
-    method: Method = DEFAULT,
 ) -> float:
     """F/(mu U) along or towards the floor, or T/(mu a² w), of a disc with its rim ``gap`` radii above the floor.
 
@@ -183,7 +181,7 @@ def near_wall(
     *velocity, spin = ways[motion]
     coupled = towed(
         cells, [(cells[0] / 2 + 0.3, radius * (1 + gap))], radius, velocity, spin, density=2.0,
-        relaxation_time=relaxation_time, lubrication=lubrication, solid_walls=True, method=method,
+        relaxation_time=relaxation_time, lubrication=lubrication, solid_walls=True,
     )  # fmt: skip
     nu = viscosity(relaxation_time)
     unit = nu * SLOW * (radius if motion == "turning" else 1.0)
@@ -199,18 +197,14 @@ def near_wall(
     return steady(coupled, load, (cells[1] / (2 * math.pi)) ** 2 / nu)
 
 
-def jeffrey_onishi(motion: str, gap: float) -> float:
-    """The exact answers of ``near_wall`` for a plane wall and nothing else (Jeffrey & Onishi 1981)."""
+def jeffrey_onishi(gap: float) -> float:
+    """The exact answer of ``near_wall`` "towards" a plane wall and nothing else (Jeffrey & Onishi 1981)."""
     alpha = math.acosh(1 + gap)
-    if motion == "along":
-        return 4 * math.pi / alpha
-    if motion == "towards":
-        return 4 * math.pi / (alpha - math.tanh(alpha))
-    return 4 * math.pi / math.tanh(alpha)
+    return 4 * math.pi / (alpha - math.tanh(alpha))
 
 
 def under_way(
-    diameter: float, speed: float, degrees: float, drag: float, *, relaxation_time: float, method: Method
+    diameter: float, speed: float, degrees: float, drag: float, *, relaxation_time: float, method: Method = DEFAULT
 ) -> Iterator[tuple[Coupled, Floats, float]]:
     """A disc towed through a periodic box of four diameters, at an angle to the grid, after each step over ten cells.
 
@@ -235,7 +229,6 @@ def towed_noise(
     relaxation_time: float = TAU,
     speed: float = 0.01,
     degrees: float = 11.0,
-    method: Method = DEFAULT,
 ) -> float:
     """Rms of the drag over its mean: a disc towed through a periodic box of four diameters, at an angle to the grid.
 
@@ -243,7 +236,7 @@ def towed_noise(
     Over ten cells, once the flow is steady; a slow trend (parabola) is taken out.
     """  # fmt: skip
     held_back = sangani_acrivos(math.pi / 4 * (diameter / round(4 * diameter)) ** 2)
-    way = under_way(diameter, speed, degrees, held_back, relaxation_time=relaxation_time, method=method)
+    way = under_way(diameter, speed, degrees, held_back, relaxation_time=relaxation_time)
     drag = np.array([-coupled.fluid_force[0] @ along for coupled, along, _ in way])
     x = np.linspace(-1, 1, len(drag))
     smooth = np.polyval(np.polyfit(x, drag, 2), x)

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from porescale.common.api.report import Report
 from porescale.common.cli.application import application, main
+from porescale.common.core.version import VERSION
 from porescale.common.evidence.benchmarks import Row
 from porescale.common.evidence.benchmarks import table as rates_table
 from porescale.common.schema.sections import load
@@ -163,7 +164,7 @@ def test_help_and_version(toy) -> None:
     assert code == 0
     assert all(name in out for name in ("run", "check", "show", "new", "sweep", "verify", "bench"))
     assert toy("run", "--help")[0] == 0
-    assert toy("--version")[1] == "1.2.3\n"
+    assert toy("--version")[1] == f"{VERSION}\n"
     assert "--no-" not in toy("run", "--help")[1]
 
 
@@ -191,7 +192,7 @@ def test_asking_for_help_imports_nothing_heavy() -> None:
         "from porescale.common.cli.package import Package\n"
         "f = lambda *a, **k: 1 / 0\n"
         "names = ('scene', 'build', 'drive', 'report', 'show', 'look', 'template', 'validations', 'benchmarks')\n"
-        "toy = Package(name='toy', module='toy', version='1', summary='s', **dict.fromkeys(names, f))\n"
+        "toy = Package(name='toy', module='toy', summary='s', **dict.fromkeys(names, f))\n"
         "code = main(application(toy), ['--help'])\n"
         "heavy = {'numba', 'numpy', 'pint', 'pydantic', 'matplotlib', 'h5py'} & set(sys.modules)\n"
         "sys.exit(code or (str(heavy) if heavy else 0))"
@@ -208,7 +209,7 @@ def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
         "f = lambda *a, **k: 1 / 0\n"
         "show = lambda folder: (folder / str(i) for i in range(100000))\n"
         "names = ('build', 'drive', 'report', 'look', 'template', 'validations', 'benchmarks')\n"
-        "toy = Package(name='toy', module='toy', version='1', summary='s', scene=lambda: Section, show=show, "
+        "toy = Package(name='toy', module='toy', summary='s', scene=lambda: Section, show=show, "
         "**dict.fromkeys(names, f))\n"
         "sys.exit(main(application(toy), ['show', '.']))"
     )

@@ -92,7 +92,7 @@ def test_names_are_chosen_as_of_other_registers():
 def test_the_files_say_the_same_thing(tmp_path):
     flows = register().chosen()
     rows = [row for law in BREAKS for y in Y.values for row in flows[0].run(law, y, False)]
-    write(tmp_path / "map", "toy study stability", "1.2.3", flows, rows, quick=False)
+    write(tmp_path / "map", "toy study stability", flows, rows, quick=False)
     folder = tmp_path / "map"
     assert {file.name for file in folder.iterdir()} == {f"stability.{kind}" for kind in ("json", "csv", "md", "png")}
     assert (folder / "stability.png").read_bytes().startswith(b"\x89PNG")
@@ -112,7 +112,7 @@ def test_a_map_keeps_the_flows_that_are_as_they_were(tmp_path):
     flows = register().chosen()
     rows = [row for law in BREAKS for y in Y.values for row in flows[0].run(law, y, False)]
     rows[0] = replace(rows[0], numbers={"strain": math.nan})
-    write(tmp_path, "toy study stability", "1", flows, rows, quick=False)
+    write(tmp_path, "toy study stability", flows, rows, quick=False)
     kept = stored(tmp_path, flows, False)
     assert [row.as_dict() for row in kept[1:]] == [row.as_dict() for row in rows[1:]]
     assert csv_text(kept) == csv_text(rows)

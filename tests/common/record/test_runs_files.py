@@ -20,12 +20,13 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
     path = tmp_path / "data.txt"
     atomic.write_text(path, "old")
 
-    def fail(beside):
-        beside.write_text("half")
-        raise ZeroDivisionError
+    def fail():
+        with atomic.whole(path) as beside:
+            beside.write_text("half")
+            raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        atomic.save(path, fail)
+        fail()
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
 

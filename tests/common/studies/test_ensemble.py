@@ -15,6 +15,7 @@ from scipy import stats
 from porescale.common.cli.sweep import chosen_points, conclude
 from porescale.common.core.errors import InputError
 from porescale.common.core.statistics import Sample, bootstrap, equal, half_width, student
+from porescale.common.record.series import run_table
 from porescale.common.studies import ensemble_files, sweep_files
 from porescale.common.studies.ensemble import FAIL, OPEN, PASS, Repeats, ensembles, judged, repeated
 from porescale.common.studies.ensemble_picture import band
@@ -23,7 +24,7 @@ from porescale.common.studies.runner import Campaign, Ended
 from porescale.common.studies.schedulers.local import Local
 from porescale.common.studies.schedulers.task import Process
 from porescale.common.studies.sweep import expected, run_points
-from tests.reference.toy_package import TOY
+from tests.reference.toy_package import TOY, write_series
 
 CASES = Path(__file__).resolve().parents[3] / "cases"
 SCENE = "[decay]\nrate = 3\n[noise]\nseed = 5\n[quality.fine.decay]\nstart = 2\n"
@@ -62,13 +63,14 @@ class Machine:
             made[section][key] = json.loads(value)
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "card.json").write_text(json.dumps({"scene": made, "settings": settings, "outcome": outcome}))
+        write_series(folder, made)
         return code, "" if code == 0 else "grain 7 left"
 
 
 def swept(scene: Path, points: list[Point], machine: Machine, out: str = "out", jobs: int = 1, **more) -> list[Ended]:
     scheduler = Local(lambda task, cores: SimpleNamespace(run=lambda: machine(task.command()), stop=lambda: None))
     campaign = Campaign("toy", scene, scene.parent / out, scheduler=scheduler, **more)
-    return run_points(TOY, campaign, points, jobs, [AT_END], "toy sweep", lambda text: None)
+    return run_points(campaign, points, jobs, [AT_END], "toy sweep", lambda text: None)
 
 
 def table(folder: Path) -> list[dict[str, str]]:
@@ -170,7 +172,7 @@ def test_a_scene_that_draws_nothing_is_refused_and_told_what_to_do(tmp_path):
 
 def test_a_line_has_the_mean_of_the_runs_and_what_it_is_worth(scene):
     ends = swept(scene, repeats(scene, 5), Machine())
-    values = [TOY.table(ended.folder, "series")["left (m)"][-1] for ended in ends]
+    values = [run_table(ended.folder, "series")["left (m)"][-1] for ended in ends]
     (line,) = table(scene.parent / "out")
     assert (line["asked"], line["finished"], line["n"], line["over"]) == ("5", "5", "5", "noise.seed")
     assert float(line["mean"]) == pytest.approx(np.mean(values))
@@ -211,7 +213,7 @@ def test_runs_that_do_not_finish_are_counted_said_and_leave_the_row_open(scene):
     assert line["remark"] == "4 of 6 finished (1 unstable, 1 refused)"
     assert "4 of 6 finished (1 unstable, 1 refused)" in (scene.parent / "out" / "sweep.md").read_text()
     assert conclude(ends) == 1
-    lines = sweep_files.ensemble_lines(ensembles(repeats(scene, 6), ends), [AT_END], TOY.table)
+    lines = sweep_files.ensemble_lines(ensembles(repeats(scene, 6), ends), [AT_END], run_table)
     assert "4 of 6 finished (1 unstable, 1 refused)" in ensemble_files.printed(lines)[0]
     assert not ensemble_files.failed(lines)
 

@@ -4,11 +4,11 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from porescale.common.studies.budget_check import Promise, benchmark, compare, error_of, settings
 from porescale.common.studies.front import Choice, FrontPoint, read_front
+from tests.reference.toy_package import TOY
 
 POINT = FrontPoint("10", None, ("numerics.spacing=0.1",), 0.05, 0.01, 1.0, 0.8, 1e-3, 1.0, {"front": 0.04})
 
@@ -23,23 +23,14 @@ def front_beside(folder: Path, **more):
     return read_front(folder / "scene.toml")
 
 
-class Package:
-    """As much of a package as is asked for."""
-
-    @staticmethod
-    def table(folder: Path, name: str):
-        """A series."""
-        assert name == "series"
-        return {"time (s)": np.array([0.0, 1.0]), "front (m)": np.array([0.0, 2.4])}
-
-
 def test_the_error_is_the_distance_from_the_answers_that_the_front_keeps(tmp_path):
     front = front_beside(tmp_path, references=[{"front": [1.0]}])
-    assert error_of(Package, front, POINT, tmp_path) == pytest.approx((0.04, (1.2 - 1.0) / 2.0))
+    (tmp_path / "series.csv").write_text("time (s),front (m)\n0.0,0.0\n1.0,2.4\n")
+    assert error_of(front, POINT, tmp_path) == pytest.approx((0.04, (1.2 - 1.0) / 2.0))
 
 
 def test_a_front_without_answers_leaves_the_error_open(tmp_path):
-    assert error_of(Package, front_beside(tmp_path), POINT, tmp_path) == (0.05, None)
+    assert error_of(front_beside(tmp_path), POINT, tmp_path) == (0.05, None)
 
 
 def test_a_run_within_30_per_cent_and_the_scatter_keeps_its_promise():
@@ -67,4 +58,4 @@ def test_the_point_runs_for_as_long_as_it_was_measured():
 
 
 def test_a_case_without_a_front_has_no_row(tmp_path):
-    assert list(benchmark(Package, tmp_path)) == []
+    assert list(benchmark(TOY, tmp_path)) == []

@@ -11,11 +11,12 @@ import pytest
 
 from porescale.common.cli.sweep import check_points, expected
 from porescale.common.core.errors import InputError
+from porescale.common.record.series import run_table
 from porescale.common.studies import sweep_files
 from porescale.common.studies.parameter_table import Point, crossed, named, read_points, varied
 from porescale.common.studies.runner import Campaign, Ended
 from porescale.common.studies.schedulers.local import Local
-from tests.reference.toy_package import TOY
+from tests.reference.toy_package import TOY, write_series
 
 SCENE = "[decay]\nrate = 3\n[quality.fine.decay]\nstart = 2\n"
 
@@ -38,6 +39,7 @@ class Machine:
         card = {"scene": {"decay": {"rate": rate, "start": 1.0}}, "settings": settings, "outcome": outcome,
                 "seconds": 2.0, "step": 10}  # fmt: skip
         (folder / "card.json").write_text(json.dumps(card))
+        write_series(folder, card["scene"])
         return {"finished": 0, "unstable": 3, "interrupted": 130}[outcome], "" if outcome == "finished" else "grain 7"
 
 
@@ -187,7 +189,7 @@ def test_the_table_holds_what_was_set_what_it_cost_and_what_came_out(tmp_path):
     ends = list(campaign(tmp_path, Machine({"rate=2": "unstable"})).all(points, 1, print))
     rows = [{"name": "half", "column": "left (m)", "at": {"first_below": 0.5}, "unit": "s"},
             {"name": "lost", "column": "nowhere", "at": "end"}]  # fmt: skip
-    sweep_files.write(tmp_path / "out", "toy sweep", ends, rows, TOY.table, points)
+    sweep_files.write(tmp_path / "out", "toy sweep", ends, rows, run_table, points)
     lines = list(csv.DictReader((tmp_path / "out" / "sweep.csv").open()))
     assert [line["decay.rate"] for line in lines] == ["1", "2"]
     assert float(lines[0]["half (s)"]) == pytest.approx(0.7)  # the first of the tenths beyond ln 2 = 0.693
@@ -221,12 +223,11 @@ def test_a_picture_shows_the_columns_that_differ_and_says_how_many_it_leaves_out
 
 
 def test_a_number_that_cannot_be_had_is_none(tmp_path):
-    card = {"scene": {"decay": {"rate": 1.0, "start": 1.0}}}
-    (tmp_path / "card.json").write_text(json.dumps(card))
-    ended = Ended(Point("a", ()), tmp_path, "finished", card)
-    assert np.isnan(sweep_files.number(ended, {"column": "left (m)", "at": "begin"}, TOY.table))
-    assert np.isnan(sweep_files.number(ended, {"column": "left (m)", "at": "end", "file": "lines"}, TOY.table))
-    assert sweep_files.number(ended, {"column": "left (m)", "at": "end"}, TOY.table) == pytest.approx(np.exp(-1))
+    write_series(tmp_path, {"decay": {"rate": 1.0, "start": 1.0}})
+    ended = Ended(Point("a", ()), tmp_path, "finished", {})
+    assert np.isnan(sweep_files.number(ended, {"column": "left (m)", "at": "begin"}, run_table))
+    assert np.isnan(sweep_files.number(ended, {"column": "left (m)", "at": "end", "file": "lines"}, run_table))
+    assert sweep_files.number(ended, {"column": "left (m)", "at": "end"}, run_table) == pytest.approx(np.exp(-1))
 
 
 SOUND = ['"end"', '"min"', "0.5", "{ max_from = 6 }", "{ change_from = 0 }",

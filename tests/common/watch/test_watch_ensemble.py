@@ -2,13 +2,13 @@
 
 import json
 import shutil
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from porescale.common.cli.application import application, main
 from porescale.common.core.statistics import half_width
+from porescale.common.record.series import run_table
 from porescale.common.studies import sweep_files
 from porescale.common.studies.ensemble import Repeats
 from porescale.common.studies.parameter_table import Point, named, repeats, varied
@@ -36,14 +36,12 @@ def run(folder, point: Point) -> Ended:
 
 
 def written(folder, points, ends) -> None:
-    sweep_files.write(folder, "toy sweep", ends, ROWS, PROGRAM.table, points)
+    sweep_files.write(folder, "toy sweep", ends, ROWS, run_table, points)
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
     """What `swept` is a copy of."""
-    from porescale.common.api.program import run_table
-
     folder = tmp_path_factory.mktemp("swept")
     one, other = varied(["toy.rate=1,2"])
     points = [*members(one), *members(other)]
@@ -53,12 +51,8 @@ def runs(tmp_path_factory):
 
 
 @pytest.fixture
-def swept(runs, tmp_path, monkeypatch):
+def swept(runs, tmp_path):
     """Two combinations of four toys, of which the first three of one and all of the other have finished."""
-    from porescale.common.api.program import run_table
-    from tests.reference import watched as served_from
-
-    monkeypatch.setattr(served_from, "PROGRAM", replace(PROGRAM, table=run_table))
     shutil.copytree(runs, tmp_path, dirs_exist_ok=True)
     return tmp_path
 

@@ -4,21 +4,21 @@ from pathlib import Path
 
 import pytest
 
+from continuum_sph import load
 from continuum_sph.builders import rehearsal
 from continuum_sph.builders.parts.pore_water import ground_of
-from continuum_sph.scene.sections import load_scene
 from porescale.common.api import run_scene
 
 CASES = Path(__file__).parents[3] / "cases"
 
 
 def test_the_soil_waits_for_the_water():
-    ground, _ = ground_of(load_scene(CASES / "saturated_levee"), hasty=True)
+    ground, _ = ground_of(load(CASES / "saturated_levee"), hasty=True)
     assert ground.pairs.builds == 0
 
 
 def test_a_run_begins_with_the_soil():  # the twin
-    ground, _ = ground_of(load_scene(CASES / "saturated_levee"))
+    ground, _ = ground_of(load(CASES / "saturated_levee"))
     assert ground.pairs.builds == 1
 
 
@@ -26,12 +26,12 @@ def test_a_run_begins_with_the_soil():  # the twin
 def test_only_water_in_soil_that_moves_is_begun_twice(monkeypatch: pytest.MonkeyPatch, case: str, twice: bool) -> None:
     found = []
     monkeypatch.setattr(run_scene, "rehearsed", lambda module, scene, fits: found.append(fits()))
-    rehearsal.rehearsed(load_scene(CASES / case))
+    rehearsal.rehearsed(load(CASES / case))
     assert found == [twice]
 
 
 def test_much_of_it_is_not_held_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     found = []
     monkeypatch.setattr(run_scene, "rehearsed", lambda module, scene, fits: found.append(fits()))
-    rehearsal.rehearsed(load_scene(CASES / "saturated_levee", settings=["numerics.spacing=0.001"]))
+    rehearsal.rehearsed(load(CASES / "saturated_levee", settings=["numerics.spacing=0.001"]))
     assert found == [False]

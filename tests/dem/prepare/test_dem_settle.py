@@ -11,7 +11,7 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
-from porescale.dem.prepare import settle
+from porescale.dem.prepare import on_disk, settle
 from porescale.dem.prepare.settle import Pile, prepare, weights_of
 
 PILE = Pile((0.04, 0.0), 0.02, 120, 1.5e-3, 2500.0, seed=4)
@@ -34,15 +34,15 @@ def test_a_pile_settles_to_hard_discs_at_rest_behind_its_plate():
     assert 0.6 * weight < floor < (1.0 + settle.BALANCE) * weight
 
 
-def test_relaxed_grains_stay_where_they_are_under_the_law_of_the_run():
-    grains = prepare(
-        PILE, BOX, LAW, plates=[dataclasses.replace(GATE, velocity=0.0)], weight_density=1500.0, cache=False
-    )
+def test_relaxed_grains_stay_where_they_are_under_the_law_of_the_run(tmp_path):
+    still = dataclasses.replace(GATE, velocity=0.0)
+    grains = prepare(PILE, BOX, LAW, plates=[still], weight_density=1500.0, folder=tmp_path)
     start = grains.discs.position.copy()
     weights = weights_of(grains.discs, 1500.0)
     grains.step(grains.stable_step(), weights, count=3000)
     # Rest is called at a kinetic energy of 1e-8 m g d per grain: sqrt(2e-8 g d) = 1.7e-5 m/s, for 0.1 s at
-    # most. assert np.abs(grains.discs.position - start).max() < 1.7e-5 * 0.1
+    # most.
+    assert np.abs(grains.discs.position - start).max() < 1.7e-5 * 0.1
     # Without the gate it flows: the twin that must fail.
     grains.remove_plate("gate")
     grains.step(grains.stable_step(), weights, count=3000)
@@ -74,14 +74,14 @@ def flip_a_bit(path):
 
 
 def leave_out_a_part(path):
-    state = settle.unpack(path)
+    state = on_disk.unpack(path)
     del state["pairs"]["anchor"]
-    settle.pack(path, state)
+    on_disk.pack(path, state)
 
 
 def give_another_shape(path):
-    state = settle.unpack(path)
-    settle.pack(path, {**state, "discs": {name: part[:-1] for name, part in state["discs"].items()}})
+    state = on_disk.unpack(path)
+    on_disk.pack(path, {**state, "discs": {name: part[:-1] for name, part in state["discs"].items()}})
 
 
 @pytest.mark.parametrize(
@@ -116,7 +116,7 @@ def test_a_cache_that_cannot_be_written_is_done_without(tmp_path):
 
 def test_a_gate_lower_than_the_pile_is_refused():
     with pytest.raises(InputError, match=r"gate.y_high.*spill"):
-        prepare(PILE, BOX, LAW, plates=[dataclasses.replace(GATE, y_high=0.008)], cache=False)
+        prepare(PILE, BOX, LAW, plates=[dataclasses.replace(GATE, y_high=0.008)])
 
 
 def test_grains_that_float_do_not_settle():

@@ -15,6 +15,7 @@ from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.common.cli.application import application, main
 from porescale.common.cli.package import Package
 from porescale.common.studies.quantities import Columns, measured
+from porescale.output.case import expected
 from tests.reference.folders import CASES
 
 FILES = sorted(path for path in CASES.glob("*/expected.toml") if (path.parent / "scene.toml").exists())
@@ -46,12 +47,6 @@ MOVED = {
     "lifting_gate": ('["16.5 mm", 0]', '["16.25 mm", 0]', {"fluid that left with the gate"}),
 }  # fmt: skip
 """Cases of what moves through a side: a number of the scene, another one, and the rows that miss with it."""
-
-
-def expected(case: str) -> list[dict[str, Any]]:
-    """The rows of a case's expected.toml."""
-    rows: list[dict[str, Any]] = tomllib.loads((CASES / case / "expected.toml").read_text(encoding="utf-8"))["expected"]
-    return rows
 
 
 def missed(
@@ -93,7 +88,7 @@ def collapse(porescale, tmp_path_factory):
 
 @pytest.mark.parametrize("case", [path.parent.name for path in FILES])
 def test_every_expectation_is_complete_and_reasoned(case):
-    rows = expected(case)
+    rows = expected(CASES / case)
     assert len({row["name"] for row in rows}) == len(rows) > 0
     for row in rows:
         assert KEYS <= row.keys() <= KEYS | MORE
@@ -153,7 +148,7 @@ def test_the_settling_disc_reaches_the_published_speed(porescale, tmp_path, qual
     out = tmp_path / quality
     words = ("--quality", quality, "--set", FEW, "--out", out, "--quiet", "--threads", 1)
     assert porescale("run", CASES / "settling_disc", *words) == 0
-    assert missed(open_run(out).series, expected("settling_disc")) == []
+    assert missed(open_run(out).series, expected(CASES / "settling_disc")) == []
 
 
 def test_a_disc_in_thicker_fluid_misses_it(porescale, tmp_path):
@@ -162,7 +157,7 @@ def test_a_disc_in_thicker_fluid_misses_it(porescale, tmp_path):
     out = tmp_path / "thick"
     words = ("--quality", "draft", "--set", FEW, "--set", "fluid.viscosity=1.2e-5", "--threads", 1)
     assert porescale("run", CASES / "settling_disc", "--out", out, "--quiet", *words) == 0
-    names = [it.partition(":")[0] for it in missed(open_run(out).series, expected("settling_disc"))]
+    names = [it.partition(":")[0] for it in missed(open_run(out).series, expected(CASES / "settling_disc"))]
     assert names == ["terminal speed", "largest speed"]
 
 
@@ -179,7 +174,7 @@ def test_discs_hang_by_a_law_of_ones_own_while_they_weigh_less_than_it_pulls(por
 
 def missed_by(folder: Path, case: str, at: float | None = None) -> set[str]:
     """Names of the rows, of those ``at`` a time where one is given, that a run of a case misses."""
-    ran, rows = open_run(folder), [row for row in expected(case) if at in (None, row["at"])]
+    ran, rows = open_run(folder), [row for row in expected(CASES / case) if at in (None, row["at"])]
     assert rows
     return {it.partition(":")[0] for it in missed(ran.series, rows, ran.table)}
 
@@ -277,7 +272,7 @@ def test_no_case_is_left_out():
 def test_the_continuum_does_as_expected(case, tmp_path):
     out = tmp_path / "out"
     assert main(application(CONTINUUM), ["run", str(CASES / case), "--out", str(out), "--quiet"]) == 0
-    ran, rows = open_run(out), expected(case)
+    ran, rows = open_run(out), expected(CASES / case)
     assert missed(ran.series, rows, ran.table) == []
     # The twin that must fail: where a ninth more is due, most rows would say so.
     assert missed(ran.series, [row | {"value": row["value"] / 0.9} for row in rows], ran.table)
@@ -301,7 +296,7 @@ EARLY = {
 
 @pytest.mark.slow
 def test_the_column_collapses_as_expected(collapse):
-    assert missed(collapse.series, expected("column_collapse")) == []
+    assert missed(collapse.series, expected(CASES / "column_collapse")) == []
 
 
 @pytest.mark.slow
@@ -320,7 +315,7 @@ def test_another_column_does_not(porescale, tmp_path, settings, end, names):
     # the water in them is torn instead of flowing in, and presses the grains together (with the 5 cells of standard;
     # with the draft's 4 the run is stopped before).
     columns = run(porescale, "column_collapse", tmp_path / "out", *settings, f"time.end={end}")
-    rows = [row for row in expected("column_collapse") if row["name"] in EARLY]
+    rows = [row for row in expected(CASES / "column_collapse") if row["name"] in EARLY]
     assert {row["name"] for row in rows} == EARLY
     rows = [row for row in rows if not isinstance(row["at"], float) or row["at"] < end]
     found = {it.partition(":")[0] for it in missed(columns, rows)}
@@ -334,21 +329,21 @@ TANK_COARSE = ("fluid.spacing=1e-3", "fluid.step=8.33333333333333e-5", "output.s
 @pytest.mark.slow
 def test_the_column_in_the_tank_collapses_as_expected(porescale, tmp_path):
     columns = run(porescale, "column_collapse_tank", tmp_path / "out", *TANK_COARSE)
-    assert missed(columns, expected("column_collapse_tank")) == []
+    assert missed(columns, expected(CASES / "column_collapse_tank")) == []
 
 
 @pytest.mark.slow
 def test_a_column_whose_gate_vanishes_is_ahead_of_one_whose_gate_is_lifted(porescale, tmp_path):  # the twin
     gone = ("rectangle=[]", "gate={x = 0.15, opens_at = 0.05, friction = 0.05}", "time.end=0.26")
     columns = run(porescale, "column_collapse_tank", tmp_path / "out", *TANK_COARSE, *gone)
-    rows = [row for row in expected("column_collapse_tank") if isinstance(row["at"], float)]
+    rows = [row for row in expected(CASES / "column_collapse_tank") if isinstance(row["at"], float)]
     assert [it.partition(":")[0] for it in missed(columns, rows)] == ["centre of mass at 0.25 s"]
 
 
 def test_grains_that_never_touch_or_move_would_be_noticed():
     # The twin that must fail: no row may be passed by a gas of grains, nor by water that stands still.
     names = ["Mach number", "highest density", "lowest density", "largest overlap", "overlap in 95 % of rows"]
-    rows = [row for row in expected("column_collapse") if row["name"] in (*names, "overlap at the end")]
+    rows = [row for row in expected(CASES / "column_collapse") if row["name"] in (*names, "overlap at the end")]
     still = {row["column"]: np.full(3, float("density" in row["column"])) for row in rows}
     assert len(missed({**still, "time (s)": np.arange(3.0)}, rows)) == len(rows) == 6
 

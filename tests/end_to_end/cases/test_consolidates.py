@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from porescale.output.case import expected
-from tests.reference.folders import CASES, script
+from tests.reference.folders import CASES, allowed, script
 
 HALVES = 0.196731, 0.275038
 """T_v at which 0.5 = sum of 2/l² exp(-l² T_v), and of 6/l⁴ exp(-l² T_v), l = pi/2, 3 pi/2 ...: by bisection."""
@@ -27,12 +27,6 @@ def case() -> ModuleType:
 def layers() -> ModuleType:
     """What is read of a layer, as a module."""
     return script("micro_to_macro", "layers")
-
-
-def row(name: str) -> tuple[float, float]:
-    """Value and tolerance of a row of expected.toml."""
-    (found,) = [it for it in expected(CASES / "micro_to_macro") if it["name"] == name]
-    return found["value"], found["tolerance"]
 
 
 def exact(layers: ModuleType, storage: float = 0.0):
@@ -64,7 +58,7 @@ def test_a_layer_read_with_twice_its_k_or_with_water_that_is_taken_for_stiff_is_
     layer = exact(layers, 4e-6)  # 6 % of 1/M
     for wrong in (replace(layer, mobility=2.0 * layer.mobility), replace(layer, storage=0.0)):
         assert abs(wrong.half_left - HALVES[0]) > 10 * FITTED
-    value, tolerance = row("K of beds that consolidate over that at their porosity")
+    value, tolerance = allowed("micro_to_macro", "K of beds that consolidate over that at their porosity")
     assert abs(value / 2.0 - value) > 3 * tolerance
 
 
@@ -88,16 +82,16 @@ def test_a_layer_of_soil_consolidates_as_terzaghi_says_and_one_of_soft_water_doe
         ("half of the excess, T_v of soil", "half settled, T_v of soil"), HALVES, (layer.half_left, layer.half_settled),
         strict=True,
     ):  # fmt: skip
-        value, tolerance = row(name)
+        value, tolerance = allowed("micro_to_macro", name)
         assert half == pytest.approx(value, abs=1e-4)  # four digits are written there
         assert abs(seen - value) < tolerance
     stiff = replace(case.consolidated(20, ("water.sound_speed=10",)), storage=0.0)  # 4.6 n M, taken for stiff
-    assert abs(stiff.half_settled - HALVES[1]) > 3 * row("half settled, T_v of soil")[1]
+    assert abs(stiff.half_settled - HALVES[1]) > 3 * allowed("micro_to_macro", "half settled, T_v of soil")[1]
 
 
 @pytest.mark.slow
 def test_a_bed_lets_its_water_out_as_the_case_says_and_one_of_twice_the_k_does_not(case):
-    value, tolerance = row("K of beds that consolidate over that at their porosity")
+    value, tolerance = allowed("micro_to_macro", "K of beds that consolidate over that at their porosity")
     one = math.sqrt(8.0) * tolerance  # that of eight beds, of one
 
     def seen(*settings: str) -> float:
@@ -108,7 +102,9 @@ def test_a_bed_lets_its_water_out_as_the_case_says_and_one_of_twice_the_k_does_n
         for name, half in zip(("half of the excess", "half settled"), HALVES, strict=True):
             own = replace(with_k, mobility=with_k.seen)
             found = own.half_left if name == "half of the excess" else own.half_settled
-            assert found / half == pytest.approx(1.0, abs=math.sqrt(8.0) * row(f"{name}, T_v of grains over soil")[1])
+            assert found / half == pytest.approx(
+                1.0, abs=math.sqrt(8.0) * allowed("micro_to_macro", f"{name}, T_v of grains over soil")[1]
+            )
         return float(with_k.seen / with_k.mobility)
 
     assert abs(seen() - value) < one

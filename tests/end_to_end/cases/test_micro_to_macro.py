@@ -8,8 +8,7 @@ import pytest
 
 from porescale import load
 from porescale.analysis.homogenise import packing_of, pressure_of, section_of, stiffness_over_pressure
-from porescale.output.case import expected
-from tests.reference.folders import CASES, script
+from tests.reference.folders import CASES, allowed, script
 
 CASE = CASES / "micro_to_macro"
 FINEST = 12  # rows of soil over the depth of the column
@@ -19,12 +18,6 @@ FINEST = 12  # rows of soil over the depth of the column
 def case() -> ModuleType:
     """The case's script as a module."""
     return script("micro_to_macro")
-
-
-def row(name: str) -> tuple[float, float]:
-    """Value and tolerance of a row of expected.toml."""
-    (found,) = [it for it in expected(CASE) if it["name"] == name]
-    return found["value"], found["tolerance"]
 
 
 def test_the_material_file_is_of_the_scene_beside_it():
@@ -55,7 +48,7 @@ def test_an_element_is_as_strong_as_its_grains(case):
     stress = case.lab.biaxial(case.material_of(soil), soil.reference, 0.05, 500)[1][-1]
     strong = math.asin((stress[2] - stress[3]) / (stress[2] + stress[3]))
     angle, error = soil.origin.measured["critical_friction_angle"]
-    value, tolerance = row("critical angle of an element over that of grains")
+    value, tolerance = allowed("micro_to_macro", "critical angle of an element over that of grains")
     assert strong / angle == pytest.approx(value, abs=tolerance)
     peak = case.ground(("soil.strength=peak",)).soil  # the twin that must fail
     assert peak.friction_angle - angle > 3 * error
@@ -68,7 +61,7 @@ def soil_front(case: ModuleType, angle: float) -> float:
 
 @pytest.mark.slow
 def test_a_column_of_soil_ends_where_the_case_says_and_one_of_another_strength_does_not(case):
-    value, tolerance = row("front of fallen soil")
+    value, tolerance = allowed("micro_to_macro", "front of fallen soil")
     angle = case.ground().soil.friction_angle
     assert abs(soil_front(case, angle) - value) < tolerance
     assert abs(soil_front(case, 2.0 * angle) - value) > 3 * tolerance
@@ -76,7 +69,7 @@ def test_a_column_of_soil_ends_where_the_case_says_and_one_of_another_strength_d
 
 @pytest.mark.slow
 def test_columns_of_grains_end_where_the_case_says_and_smooth_ones_do_not(case):
-    value, tolerance = row("centre of fallen grains")
+    value, tolerance = allowed("micro_to_macro", "centre of fallen grains")
     fell = [case.grains_fall(seed).centre_at_rest for seed in range(1, 5)]
     assert abs(sum(fell) / 4 - value) < math.sqrt(2.0) * tolerance  # that of eight packings, of four
     smooth = case.grains_fall(1, ("contact.friction=0.1",)).centre_at_rest

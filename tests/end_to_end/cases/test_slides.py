@@ -14,7 +14,7 @@ from porescale import load
 from porescale.builders.build import build
 from porescale.output.case import expected
 from porescale.scene.packing import Packing
-from tests.reference.folders import CASES, script
+from tests.reference.folders import CASES, allowed, script
 
 CASE = CASES / "micro_to_macro"
 
@@ -24,12 +24,6 @@ def case() -> ModuleType:
     """The slopes of the case as a module; its script puts the folder on the path."""
     script("micro_to_macro")
     return script("micro_to_macro", "slides")
-
-
-def row(name: str) -> tuple[float, float]:
-    """Value and tolerance of a row of expected.toml."""
-    (found,) = [it for it in expected(CASE) if it["name"] == name]
-    return found["value"], found["tolerance"]
 
 
 def slid(case: ModuleType, soil: float, rated: float) -> Any:
@@ -119,7 +113,7 @@ def test_a_table_says_whether_both_scales_agree_and_the_rows_are_those_of_the_ca
 
 
 def test_soil_shears_at_the_friction_of_the_case_and_soil_of_another_angle_does_not(case):
-    value, tolerance = row("friction of a slope of soil under water")
+    value, tolerance = allowed("micro_to_macro", "friction of a slope of soil under water")
     found = case.soil_slides(case.layer(case.FEW, case.STEEP)).friction
     # 10 rows in place of 40: what half of the row at the floor takes of a depth, 0.5/10 of the value, more
     assert abs(found - value) < tolerance + 0.05 * value
@@ -129,7 +123,7 @@ def test_soil_shears_at_the_friction_of_the_case_and_soil_of_another_angle_does_
 
 @pytest.mark.slow
 def test_grains_slide_as_the_case_says_and_smooth_ones_do_not(case):
-    value, tolerance = row("friction of a slope of grains under water")
+    value, tolerance = allowed("micro_to_macro", "friction of a slope of grains under water")
     found = [case.grains_slide(seed, case.STEEP).friction for seed in (1, 2, 3)]
     assert abs(sum(found) / 3 - value) < math.sqrt(8 / 3) * tolerance  # that of eight packings, of three
     smooth = case.grains_slide(1, case.STEEP, ("contact.friction=0.1",)).friction

@@ -14,6 +14,7 @@ from porescale.common.core.constants import GRAVITY
 from porescale.common.schema.sections import load
 from porescale.common.studies.front import read_front
 from porescale.common.studies.trade_plan import read_plan
+from porescale.output.case import expected
 from tests.reference.folders import CASES, script
 
 PLANS = sorted(CASES.glob("*/trade.toml"))
@@ -79,7 +80,7 @@ def test_the_exact_values_of_consolidation_are_those_of_the_series():
 
 def test_the_exact_values_of_the_dam_are_those_that_it_expects():
     folder = CASES / "rectangular_dam"
-    rows = {it["name"]: it for it in tomllib.loads((folder / "expected.toml").read_text(encoding="utf-8"))["expected"]}
+    rows = {it["name"]: it for it in expected(folder)}
     for row in tomllib.loads((folder / "trade.toml").read_text(encoding="utf-8"))["quantity"]:
         assert row["exact"] == rows[row["name"]]["value"]
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from porescale.dem.grains import Grains
-from porescale.dem.prepare.settle import pack, unpack
+from porescale.dem.prepare.on_disk import pack, unpack
 
 OF_LAST_CALL = {"steering.given", "steering.watched_load", "steering.clumps.withheld"}
 """Sums and means over the last call of step, which differ where the steps were divided otherwise."""

@@ -78,7 +78,7 @@ def test_a_disc_a_cell_higher_above_the_wall_is_told_apart():
 @pytest.mark.parametrize("cells", films.AT_A_WALL)
 def test_without_the_correction_a_film_is_too_weak(cells):
     gap = cells / 10
-    found = towed.near_wall("towards", gap) / towed.jeffrey_onishi("towards", gap)
+    found = towed.near_wall("towards", gap) / towed.jeffrey_onishi(gap)
     assert 1 - found > 2.5 * tolerance("coupling.films")
 
 
@@ -153,7 +153,7 @@ def test_heavier_discs_kiss_earlier():
 
 def test_a_floor_half_a_cell_lower_is_told_apart():
     gap, cells = 0.3, 0.5
-    ratio = towed.jeffrey_onishi("towards", gap) / towed.jeffrey_onishi("towards", gap + cells / 10)
+    ratio = towed.jeffrey_onishi(gap) / towed.jeffrey_onishi(gap + cells / 10)
     assert ratio - 1 > 2 * tolerance("coupling.approach_to_the_bottom")
 
 

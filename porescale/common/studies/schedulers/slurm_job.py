@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from porescale.common.core.errors import InputError, PorescaleError
-from porescale.common.record.resume import CHECKPOINT, how_far
+from porescale.common.record.check_state import CHECKPOINT
+from porescale.common.record.resume import how_far
 from porescale.common.studies.schedulers.task import INTERRUPTED, Process, Task
 
 WARNING_SECONDS = 120
