@@ -128,7 +128,7 @@ class Coupled:
         mass, inertia = inside.mass.copy(), inside.inertia.copy()
         mass[seen.stop :] = inertia[seen.stop :] = 0.0
         share = np.ones((discs.count, 2))
-        share[seen] = response_share(self.grains, inside, LAYER * self.scales.spacing, seen, self._least)
+        share[seen] = response_share(self.grains, inside, self.scales.spacing, seen, self._least)
         self.immersed = it = Immersed(mass, inertia, discs.velocity, discs.spin, weight, share)
         if self._least > 0.0:
             whole = of_whole_bodies(self.grains, discs.mass, discs.inertia)[0]
@@ -284,15 +284,16 @@ def cells_of(fluid: Fluid) -> type[SaturatedCells]:
     return DeviceSaturatedCells
 
 
-def response_share(grains: Grains, inside: Displaced, layer: float, seen: slice, least: float) -> Reals:
+def response_share(grains: Grains, inside: Displaced, spacing: float, seen: slice, least: float) -> Reals:
     """Share m_p/(m_p + m_v) of a change of force, and of torque, that each of the discs ``seen`` takes up in a step,
     (n, 2).
 
-    layer: thickness, m, of the fluid that answers within a step;  least: of all the fluid inside: see immersed.py.
+    spacing m, of cells;  least: of all the fluid inside, see immersed.py.  Cells act at their middles, half a diagonal
+    at most off: a disc smaller than a cell has fluid as far off as that, whose moment of inertia is more than its own.
     """
-    thick = np.maximum(layer * inside.thinness[seen], least)
+    thick = np.maximum(LAYER * spacing * inside.thinness[seen], least)
     solid = of_whole_bodies(grains, grains.discs.mass, grains.discs.inertia)
-    fluid = of_whole_bodies(grains, inside.mass, inside.inertia)
+    fluid = of_whole_bodies(grains, inside.mass, np.maximum(inside.inertia, 0.5 * inside.mass * spacing**2))
     ratio = np.column_stack([one / other for one, other in zip(solid, fluid, strict=True)])
     return np.asarray(np.minimum(1.0, ratio[seen] / thick[:, None]))
 

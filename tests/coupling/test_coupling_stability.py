@@ -11,9 +11,10 @@ from porescale.benchmarks import stability_psm as stability
 from porescale.builders.checks.limits import SOUND_WARN
 from porescale.common.core.errors import Unstable
 from porescale.common.evidence.stability import STABLE, UNSTABLE, Row, holds_up_to
-from porescale.coupling import limits
+from porescale.coupling import limits, step
 from porescale.coupling.divergence_cause import Circumstances, likely_cause
 from porescale.coupling.divergence_check import DivergenceCheck, worst_cell
+from porescale.coupling.immersed import LAYER
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import fitting_weights
@@ -191,3 +192,35 @@ def test_noise_is_what_repeats_with_every_cell():
 def test_known_drags_of_beds_grow_with_the_solid_fraction():
     drags = [stability.known_drag(c) for c in (*stability.ARRAY_DRAG, 0.7, 0.78)]
     assert drags == sorted(drags)
+
+
+def spun(radius: float, relaxation_time: float) -> float:
+    """Largest spin after 100 steps, over that at first, of sixteen free discs anywhere in cells that they do not fill."""
+    rows = np.arange(4) * 6.0 + 4.0
+    places = np.stack(np.meshgrid(rows, rows), axis=-1).reshape(-1, 2)
+    places += np.random.default_rng(3).uniform(0.0, 1.0, places.shape)
+    coupled = immersed((28, 28), places, np.full(16, radius), np.full(16, 2.5), spin=np.full(16, 0.01),
+                       relaxation_time=relaxation_time, sides=("periodic", "periodic"))  # fmt: skip
+    for _ in range(100):
+        coupled.advance()
+    return float(np.abs(coupled.grains.discs.spin).max()) / 0.01
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.2, 0.5])
+@pytest.mark.parametrize("relaxation_time", [0.51, 0.6, 1.0])
+def test_discs_smaller_than_a_cell_do_not_spin_up(radius, relaxation_time):
+    # Fluid at rest drags them: no spin is more than it was, but for what one of another stirs up, less than as much.
+    assert spun(radius, relaxation_time) < 2.0
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_they_do_where_the_fluid_that_answers_has_their_own_moment_of_inertia(monkeypatch):  # the twin that must fail
+    def own(grains, inside, spacing, seen, least):
+        thick = np.maximum(LAYER * spacing * inside.thinness[seen], least)
+        mass = grains.discs.mass / inside.mass
+        inertia = grains.discs.inertia / inside.inertia
+        return np.minimum(1.0, np.column_stack((mass, inertia))[seen] / thick[:, None])
+
+    monkeypatch.setattr(step, "response_share", own)
+    with pytest.raises(Unstable):
+        spun(0.2, 1.0)
