@@ -195,7 +195,7 @@ def test_known_drags_of_beds_grow_with_the_solid_fraction():
 
 
 def spun(radius: float, relaxation_time: float) -> float:
-    """Largest spin after 100 steps, over that at first, of sixteen free discs anywhere in cells that they do not fill."""
+    """Largest spin after 100 steps, over that at first, of sixteen free discs that lie anywhere in cells."""
     rows = np.arange(4) * 6.0 + 4.0
     places = np.stack(np.meshgrid(rows, rows), axis=-1).reshape(-1, 2)
     places += np.random.default_rng(3).uniform(0.0, 1.0, places.shape)
