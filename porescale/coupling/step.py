@@ -288,8 +288,8 @@ def response_share(grains: Grains, inside: Displaced, spacing: float, seen: slic
     """Share m_p/(m_p + m_v) of a change of force, and of torque, that each of the discs ``seen`` takes up in a step,
     (n, 2).
 
-    spacing m, of cells;  least: of all the fluid inside, see immersed.py.  Cells act at their middles: a disc smaller than
-    a cell has fluid half a diagonal off, whose moment of inertia is more than that of its own area.
+    spacing m, of cells;  least: of all the fluid inside, see immersed.py.  Cells act at their middles: discs smaller
+    than a cell have fluid half a diagonal off, whose moment of inertia is more than that of their own area.
     """
     thick = np.maximum(LAYER * spacing * inside.thinness[seen], least)
     solid = of_whole_bodies(grains, grains.discs.mass, grains.discs.inertia)
