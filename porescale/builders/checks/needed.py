@@ -10,6 +10,7 @@ from porescale.builders.checks.combinations import (
     check_walls,
 )
 from porescale.builders.checks.contact import check_contact
+from porescale.builders.checks.discs_alone import free_discs
 from porescale.builders.checks.held_places import check_ring
 from porescale.builders.initial.placed import by_hand
 from porescale.common.core.constants import EDGE
@@ -68,8 +69,9 @@ def check_needed(scene: Scene) -> list[Fault]:
     faults += check_sleep(scene)
     if scene.lubrication and not (scene.fluid and (scene.grains or scene.disc)):
         faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
-    if scene.permeability and scene.fluid and not (scene.grains or scene.disc):
-        faults.append(Fault("permeability", None, "there is no bed", repair="add [grains] or [[disc]]"))
+    if scene.permeability and scene.fluid and not (free_discs(scene) or scene.disc):
+        problem = "there is no bed of discs" if scene.polygon else "there is no bed"
+        faults.append(Fault("permeability", None, problem, repair="add [grains] or [[disc]]"))
     if scene.permeability and scene.permeability.wanted is not None and scene.grains is None:
         problem = "is of grains, whose hydraulic_radius_ratio may differ; held discs have their full size"
         faults.append(Fault("permeability.wanted", scene.permeability.wanted, problem, repair="leave it out"))
