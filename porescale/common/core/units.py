@@ -14,6 +14,8 @@ _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\
 _POWER = re.compile(r"([^\W\d_])([+-]?\d)")
 LONGEST = 64
 """Characters of a unit: the parser recurs into what is longer."""
+CYCLES = ("hertz",)
+"""How names of units end that count cycles a second."""
 # No unit has a power of a power or a three-digit number; both would make the parser compute for ever.
 _ABSURD = re.compile(r"\d\s*(\*\*|\^)|\d{3}")
 
@@ -86,7 +88,7 @@ def _require_same_count(source: str, given: Any, unit: str, wanted: Any) -> None
     if angle and not wants_angle:
         why = "60 rpm are 1 Hz" if rate else "of an angle of friction take the tangent"
         raise ValueError(f"{source!r} is of an angle, {shown} is not; {why}")
-    if wants_angle and not angle and not (rate and not any("hertz" in name for name in given._units)):
+    if wants_angle and not angle and not (rate and not any(name.endswith(CYCLES) for name in given._units)):
         why = "1 Hz are 60 rpm, or 6.2832 rad/s" if rate else "a slope of 50 % is atan(0.5) = 26.57 degree"
         raise ValueError(f"{source!r} is not of an angle, {shown} is; {why}")
 
