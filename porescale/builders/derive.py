@@ -13,7 +13,7 @@ from porescale.builders.checks.discs_alone import left_out, uncertain_films
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
 from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
-from porescale.builders.checks.packing import beside_the_bed, check_compressed
+from porescale.builders.checks.packing import beside_the_bed, check_compressed, unused_spread
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.builders.checks.prescribed import check_controls, check_motions
 from porescale.builders.checks.regime import check_regime, expected_speed, too_soft, travel_step
@@ -125,6 +125,7 @@ def derive(scene: Scene) -> Derived:
     if frames and law:
         warnings += filter(None, [thin_for(frames, speed, mean_mass, law)])
     warnings += strays(scene.domain, scene.time.end, frames)
+    warnings += unused_spread(scene)
     variation = 0.0
     if scales:
         doubts = too_few_cells(frames, scales.spacing), too_light(frames, scales.spacing, scales.density)

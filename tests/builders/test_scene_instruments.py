@@ -148,6 +148,9 @@ def test_vorticity_of_a_solid_rotation_is_twice_its_rate():
     y, x = (np.mgrid[:6, :8] + 0.5) * 0.1
     # Differences of a linear field are exact but for round-off of 1e-16 over a spacing of 0.1.
     assert vorticity(-3.0 * y, 3.0 * x, 0.1) == pytest.approx(6.0, abs=1e-13)
+    # A box one cell wide, as a channel without anything that differs along it.
+    assert vorticity(-3.0 * y[:, :1], 0 * y[:, :1], 0.1) == pytest.approx(3.0, abs=1e-13)
+    assert vorticity(0 * x[:1], 3.0 * x[:1], 0.1) == pytest.approx(3.0, abs=1e-13)
 
 
 def test_a_section_over_whole_cells_counts_what_flows_through_them():

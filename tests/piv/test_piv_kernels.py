@@ -47,6 +47,27 @@ def test_the_interpolator_is_the_quintic_spline_of_scipy():
     np.testing.assert_allclose(plain, found[:2], rtol=0, atol=5.3 * 200 * 36 * EPS32)
 
 
+@pytest.mark.parametrize(("dx", "dy"), [(6.3, 0.4), (-7.6, 0.4), (5.2, -6.7), (0.3, 30.2), (60.0, 0.0)])
+def test_a_picture_that_moves_out_as_a_whole_is_the_spline_where_it_is_seen(dx, dy):
+    # Where all pixels move alike a run of them is a whole row; the part of it that is in the picture is no less exact.
+    picture = RNG.uniform(0, 200, (40, 44)).astype(np.float32)
+    shift = np.empty((2, 40, 44), np.float32)
+    shift[0], shift[1] = dx, dy
+    y, x = np.mgrid[:40, :44]
+    filtered = spline_filter(picture.astype(float), 5, mode="mirror")
+    twin = map_coordinates(filtered, [y + shift[1], x + shift[0]], order=5, prefilter=False, mode="mirror")
+    seen = (y + dy >= 0) & (y + dy <= 39) & (x + dx >= 0) & (x + dx <= 43)
+    for compiled in (True, False):
+        found, c = np.full((40, 44), np.nan, np.float32), interpolate.coefficients(picture)
+        if compiled:
+            interpolate.sample(c, shift[0], shift[1], 0, found)
+        else:
+            for row in range(40):
+                interpolate.sample_row.py_func(c, row, shift[0, row], shift[1, row], found[row])
+        assert np.isfinite(found).all()
+        assert np.abs(found - twin)[seen].max(initial=0.0) < 5.3 * 200 * (36 + 82) * EPS32 / 2
+
+
 def test_a_cubic_spline_is_another_one():
     picture = RNG.uniform(0, 200, (40, 44))
     y, x = np.mgrid[10:30, 10:30] + 0.5

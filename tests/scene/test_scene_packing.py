@@ -170,6 +170,15 @@ def test_packings_that_contradict_themselves_are_refused(keys, said):
         derive(packed(**keys))
 
 
+def test_a_spread_that_other_keys_take_the_place_of_is_said():
+    said = " ".join(derive(packed(grading=CURVE, diameter=None, size_spread=0.3)).warnings)
+    assert "grains.packing.size_spread = 0.3 is not used: diameters follow from grading" in said
+    assert "follow from log_spread" in " ".join(derive(packed(log_spread=0.1, size_spread=0.3)).warnings)
+    # The twins: either alone.
+    for keys in ({"size_spread": 0.3}, {"log_spread": 0.1, "size_spread": None}):
+        assert "is not used" not in " ".join(derive(packed(**keys)).warnings)
+
+
 SMOOTH = {"contact__tangential_stiffness": 0.0, "contact__friction": 0.0}
 
 

@@ -115,6 +115,19 @@ def test_a_film_or_a_rim_that_a_body_has_not_is_said():
     assert "rim" not in " ".join(derive(water(**block)).warnings)
 
 
+def test_a_permeability_is_of_discs_alone():
+    window = {"left": 0.002, "bottom": 0.002, "width": 0.008, "height": 0.005}
+    bed = {"permeability": {"direction": "x", "window": window}}
+    assert "permeability there is no bed of discs" in faults(SQUARE, **bed)
+    beside = {"grains__grain": [grain(0.008, 0.005)]}
+    assert "[[polygon]] are left out" in warned(SQUARE, **beside, **bed)
+    block = {"rectangle": [{"lower": [0.009, 0.0], "upper": [0.0104, 0.004]}]}
+    assert "[[rectangle]] are left out" in " ".join(derive(column(**WATER | beside | bed | block)).warnings)
+    # The twins: a bed of discs, and bodies without the section.
+    assert "left out" not in " ".join(derive(column(**WATER | beside | bed)).warnings)
+    assert "left out" not in warned(SQUARE, **beside)
+
+
 def test_films_that_are_uncertain_are_said():
     def said(**more):
         grains = {"grains__grain": [grain(0.008, 0.005)], "lubrication": {}}

@@ -183,3 +183,25 @@ def test_the_speed_to_expect_is_that_of_inlets_lids_and_towed_discs():
     held = {"domain__left": {"kind": "pressure", "pressure": 20.0}}
     # Plane Poiseuille: dp/L H²/(8 mu) = 20/0.012 * 0.008²/(8 * 0.02) = 0.67 m/s; Bernoulli: sqrt(2 * 20/1000) = 0.2.
     assert derive(channel(**held)).speed == pytest.approx(0.2, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("make", "look", "allowed"),
+    [
+        (dry, {"colour": "mass"}, "radius, angle, velocity, spin"),
+        (dry, {"field": "pressure"}, "radius, angle, velocity, spin"),
+        (column, {"colour": "mass"}, "radius, angle, velocity, spin, hydraulic_radius"),
+        (column, {"field": "vorticity"}, "velocity, pressure, solid_fraction"),
+        (water, {"colour": "spin"}, "none: there are no grains"),
+    ],
+)
+def test_pictures_of_what_no_snapshot_holds_are_refused(make, look, allowed):
+    (key, name), *_ = look.items()
+    line = f"look.{key} = '{name}': is not recorded (allowed: {allowed})"
+    assert any(it.startswith(line) for it in refusals(lambda: make(look=look))), refusals(lambda: make(look=look))
+
+
+def test_pictures_of_what_snapshots_hold_are_taken():  # the twins
+    dry(look={"colour": "spin", "field": "radius"})
+    dry(look={"field": "stress_xx"}, coarse_graining={"spacing": 0.002})
+    column(look={"colour": "hydraulic_radius", "field": "vorticity"}, output__fields=["vorticity"])

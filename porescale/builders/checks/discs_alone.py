@@ -31,7 +31,7 @@ def check_beside_polygons(scene: Scene) -> list[Fault]:
         problem = f"is soft with {scene.fluid.operator!r}" if scene.fluid.rim is None else "softens discs alone"
         problem += ": how far a rim is drawn in follows the radius, which a polygon has not"
         faults.append(Fault("fluid.rim", scene.fluid.rim, problem, "", "'sharp'"))
-    if grains and (grains.hydraulic_radius_ratio or 1.0) < 1.0 and not _free_discs(scene):
+    if grains and (grains.hydraulic_radius_ratio or 1.0) < 1.0 and not free_discs(scene):
         problem = "is of discs: the fluid sees a polygon's outline, without the thickness of its sides"
         repair = "choose polygon.thickness: in the fluid sides that touch stand two of them apart"
         key = "grains.hydraulic_radius_ratio"
@@ -55,7 +55,14 @@ def left_out(scene: Scene) -> list[str]:
             f"[lubrication] adds no film at {' and '.join(ended)}: it was measured between discs and at walls without"
             " an end; the lattice alone bears what is there, too little below three cells"
         )
-    if scene.fluid.rim == "soft" and not (_free_discs(scene) or scene.disc):
+    others = {"polygon": scene.polygon, "rectangle": scene.rectangle, "ring": scene.ring}
+    beside = [f"[[{name}]]" if name != "ring" else "[ring]" for name, it in others.items() if it]
+    if scene.permeability and beside:
+        found.append(
+            f"[permeability] is that of the discs in its window: {' and '.join(beside)} are left out; where they stand"
+            " in it the bed lets less through than permeability.csv says"
+        )
+    if scene.fluid.rim == "soft" and not (free_discs(scene) or scene.disc):
         found.append("fluid.rim = 'soft' is not used: rims of discs are softened, by their radius, and there are none")
     return found
 
@@ -88,7 +95,7 @@ def uncertain_films(scene: Scene, spacing: float, smallest: float) -> list[str]:
     return found
 
 
-def _free_discs(scene: Scene) -> bool:
+def free_discs(scene: Scene) -> bool:
     """Whether there are discs that are not held, those of clumps among them."""
     grains = scene.grains
     return grains is not None and bool(grains.packing or grains.grain or grains.circles or scene.clump)

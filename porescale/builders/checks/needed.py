@@ -10,6 +10,7 @@ from porescale.builders.checks.combinations import (
     check_walls,
 )
 from porescale.builders.checks.contact import check_contact
+from porescale.builders.checks.discs_alone import free_discs
 from porescale.builders.checks.held_places import check_ring
 from porescale.builders.initial.placed import by_hand
 from porescale.common.core.constants import EDGE
@@ -34,10 +35,7 @@ def check_needed(scene: Scene) -> list[Fault]:
                   repair="0.8 opens the pores of a dense bed; 1 seals a bed at rest, since pores in two "
                          "dimensions do not connect; 1 is right for single grains")
         )  # fmt: skip
-    painted = ("velocity", "pressure", "solid_fraction", *scene.output.fields)
-    if scene.look and scene.look.field and scene.fluid and scene.look.field not in painted:
-        repair = "choose one of these, or record it with output.fields"
-        faults.append(Fault("look.field", scene.look.field, "is not recorded", "", ", ".join(painted), repair))
+    faults += _check_look(scene)
     if scene.fluid is None:
         given = {"probe": scene.probe, "line": scene.line, "flux": scene.flux, "loads": scene.loads,
                  "permeability": scene.permeability, "output.fields": scene.output.fields}  # fmt: skip
@@ -68,8 +66,9 @@ def check_needed(scene: Scene) -> list[Fault]:
     faults += check_sleep(scene)
     if scene.lubrication and not (scene.fluid and (scene.grains or scene.disc)):
         faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
-    if scene.permeability and scene.fluid and not (scene.grains or scene.disc):
-        faults.append(Fault("permeability", None, "there is no bed", repair="add [grains] or [[disc]]"))
+    if scene.permeability and scene.fluid and not (free_discs(scene) or scene.disc):
+        problem = "there is no bed of discs" if scene.polygon else "there is no bed"
+        faults.append(Fault("permeability", None, problem, repair="add [grains] or [[disc]]"))
     if scene.permeability and scene.permeability.wanted is not None and scene.grains is None:
         problem = "is of grains, whose hydraulic_radius_ratio may differ; held discs have their full size"
         faults.append(Fault("permeability.wanted", scene.permeability.wanted, problem, repair="leave it out"))
@@ -78,6 +77,28 @@ def check_needed(scene: Scene) -> list[Fault]:
         repair = "add [permeability.window] with left, bottom, width, height"
         faults.append(Fault("permeability.window", None, "is needed where there is no packing", repair=repair))
     return faults + check_ring(scene)
+
+
+def _check_look(scene: Scene) -> list[Fault]:
+    """Faults of arrays that pictures are to show and snapshots do not hold."""
+    if scene.look is None:
+        return []
+    cells = ("velocity", "pressure", "solid_fraction", *scene.output.fields)
+    grains: tuple[str, ...] = ("radius", "angle", "velocity", "spin") if scene.grains or scene.disc else ()
+    grains += ("hydraulic_radius",) if scene.fluid and grains else ()
+    grains += ("body", "kind", "driven") if scene.segment or scene.polygon or scene.container or scene.rock else ()
+    averaged = tuple(scene.coarse_graining.fields) if scene.coarse_graining else ()  # and "stress_xx" of "stress"
+    field, colour, faults = scene.look.field, scene.look.colour, []
+    if scene.fluid and field and field not in cells:
+        repair = "choose one of these, or record it with output.fields"
+        faults.append(Fault("look.field", field, "is not recorded", "", ", ".join(cells), repair))
+    if not scene.fluid and field and field not in grains and not field.startswith(averaged):
+        allowed = ", ".join(dict.fromkeys((*grains, *averaged)))
+        faults.append(Fault("look.field", field, "is not recorded", "", allowed, "choose one of these, or add [fluid]"))
+    if colour and colour not in grains:
+        allowed = ", ".join(grains) or "none: there are no grains"
+        faults.append(Fault("look.colour", colour, "is not recorded", "", allowed, "choose one of these"))
+    return faults
 
 
 def check_places(scene: Scene) -> list[Fault]:

@@ -80,6 +80,17 @@ def check_room(packing: Packing, count: int, faults: list[Fault]) -> bool:
     return False
 
 
+def unused_spread(scene: Scene) -> list[str]:
+    """A warning of a spread of sizes that other keys take the place of, or nothing."""
+    packing = scene.grains.packing if scene.grains else None
+    if packing is None or packing.size_spread == type(packing).model_fields["size_spread"].default:
+        return []
+    given = {"sizes": packing.sizes, "grading": packing.grading, "log_spread": packing.log_spread}
+    instead = next((name for name, it in given.items() if it), "")
+    said = f"grains.packing.size_spread = {packing.size_spread:g} is not used: diameters follow from {instead}"
+    return [f"{said}; leave one of them out"] if instead else []
+
+
 def beside_the_bed(scene: Scene) -> list[str]:
     """Warnings of a window of [permeability] in which nothing is measured: no grain or held disc stands in it at the
     start, or it is too short along the flow."""

@@ -108,7 +108,8 @@ def all_fields(
 
 
 def vorticity(ux: Reals, uy: Reals, spacing: float) -> Reals:
-    """dv/dx - du/dy in every cell, (ny, nx) 1/s: central differences, one-sided at the sides."""
-    along: Reals = np.gradient(uy, spacing, axis=1)
-    up: Reals = np.gradient(ux, spacing, axis=0)
+    """dv/dx - du/dy in every cell, (ny, nx) 1/s: central differences, one-sided at the sides; in a box one cell wide
+    nothing differs across it."""
+    along: Reals = np.gradient(uy, spacing, axis=1) if uy.shape[1] > 1 else np.zeros_like(uy)
+    up: Reals = np.gradient(ux, spacing, axis=0) if ux.shape[0] > 1 else np.zeros_like(ux)
     return along - up

@@ -122,7 +122,7 @@ def better_level(package: Package, file: Path, front: Front, error: float) -> st
 
 
 def share(option: str, text: str) -> float:
-    """ "5%", "5 %" or "0.05" of an option as a share."""
+    """ "5%", "5 %" or "0.05" of an option as a share; a number beyond 1 was meant in per cent, and is refused."""
     number, sign, rest = text.partition("%")
     try:
         found = float(number) / (100 if sign else 1)
@@ -130,6 +130,8 @@ def share(option: str, text: str) -> float:
         found = math.nan
     if rest.strip() or not 0 < found < math.inf:
         raise InputError(Fault(option, text, "is not a positive share", "", "> 0", "write it as 5% or 0.05"))
+    if found > 1 and not sign:
+        raise InputError(Fault(option, text, f"is {100 * found:g} %", "", "<= 1", f"write it as {text.strip()}%"))
     return found
 
 

@@ -14,6 +14,8 @@ _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\
 _POWER = re.compile(r"([^\W\d_])([+-]?\d)")
 LONGEST = 64
 """Characters of a unit: the parser recurs into what is longer."""
+CYCLES = ("hertz",)
+"""How names of units end that count cycles a second."""
 # No unit has a power of a power or a three-digit number; both would make the parser compute for ever.
 _ABSURD = re.compile(r"\d\s*(\*\*|\^)|\d{3}")
 
@@ -71,7 +73,34 @@ def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
         one = registry.Quantity(Decimal(1), given).to(wanted).magnitude
     except pint.DimensionalityError:
         raise ValueError(f"{source!r} does not measure the same thing as {unit or 'a plain number'}") from None
+    _require_same_count(source, given, unit, wanted)
     return one - zero, zero
+
+
+def _require_same_count(source: str, given: Any, unit: str, wanted: Any) -> None:
+    """ValueError where a number or a rate is wanted and the text gives an angle, or the other way round: to Pint an
+    angle is a plain number, 1 Hz is 1 rad/s, and 60 rpm are 6.28 Hz.  1/s stays another way to write rad/s."""
+    without = {name: power for name, power in _roots(wanted).items() if name != "radian"}
+    rate = without == {"second": -1}
+    if without and not rate:
+        return
+    shown, angle, wants_angle = unit or "a plain number", _has_angle(given), _has_angle(wanted)
+    if angle and not wants_angle:
+        why = "60 rpm are 1 Hz" if rate else "of an angle of friction take the tangent"
+        raise ValueError(f"{source!r} is of an angle, {shown} is not; {why}")
+    if wants_angle and not angle and not (rate and not any(name.endswith(CYCLES) for name in given._units)):
+        why = "1 Hz are 60 rpm, or 6.2832 rad/s" if rate else "a slope of 50 % is atan(0.5) = 26.57 degree"
+        raise ValueError(f"{source!r} is not of an angle, {shown} is; {why}")
+
+
+def _has_angle(unit: Any) -> bool:
+    """Whether a unit is of an angle, or of one over a time."""
+    return "radian" in _roots(unit)
+
+
+def _roots(unit: Any) -> Any:
+    """The base units that a unit is made of, radian among them."""
+    return _registry().Quantity(Decimal(1), unit).to_root_units().units._units
 
 
 def require_unit(unit: str) -> None:

@@ -3,6 +3,7 @@
 Lengths are dots of the figure, whose rows count from its top; a film paints the inside of panels by the dot.
 """
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
@@ -164,10 +165,15 @@ class _Plan:
         lines = [""]
         for word in text.split(" "):
             longer = f"{lines[-1]} {word}".strip()
-            if self.width_of(longer) <= room or not lines[-1]:
+            if self.width_of(longer) <= room:
                 lines[-1] = longer
-            else:
-                lines.append(word)
+                continue
+            lines += [""] * bool(lines[-1])
+            while self.width_of(word) > room and len(word) > 1:  # one word, or a language without blanks
+                begins = [word[:n] for n in range(1, len(word))]
+                fits = max(1, bisect_right(begins, room, key=self.width_of))
+                lines[-1:], word = [word[:fits], ""], word[fits:]
+            lines[-1] = word
         return lines
 
     @property

@@ -79,6 +79,8 @@ class Painter:
         grid = self.survey.look.painted(snapshot)
         if grid is None or self.survey.field is None or grid.cells[self.survey.look.field].ndim != 3:
             return self.paint(snapshot)
+        if min(grid.shape) < 2:  # a line of cells has no lines beside each other
+            return self.paint(snapshot)
         velocity = grid.cells[self.survey.look.field].astype(float)
         velocity[np.hypot(velocity[..., 0], velocity[..., 1]) < CALM * self.survey.field.high] = np.nan
         (ny, nx), (left, _, bottom, _) = grid.shape, grid.extent

@@ -47,9 +47,9 @@ class Point:
         return self.settings[len(self.of.settings) :] if self.of else ()
 
     def value(self, key: str) -> str:
-        """What it sets ``key`` to; "" where it leaves the scene's value."""
+        """What it sets ``key`` to, a text without the quotes of TOML; "" where it leaves the scene's value."""
         found = [text.partition("=")[2] for text in self.settings if text.partition("=")[0] == key]
-        return found[-1] if found else ""
+        return _unquoted(found[-1]) if found else ""
 
 
 def read_points(path: Path) -> list[Point]:
@@ -141,6 +141,11 @@ def settings_of(table: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(f"{key}={literal(value, key)}" for key, value in flat(table))
 
 
+def _unquoted(value: str) -> str:
+    """A value of ``literal`` that is a text, as that text; every other as it is."""
+    return str(json.loads(value)) if re.fullmatch(r'"([^"\\]|\\.)*"', value) else value
+
+
 def _of_csv(path: Path) -> Iterator[Point]:
     try:
         lines = list(csv.reader(given_text(path).splitlines()))
@@ -152,6 +157,9 @@ def _of_csv(path: Path) -> Iterator[Point]:
     except csv.Error as error:
         raise InputError(Fault("table", None, f"is not valid CSV ({error})")) from None
     head = [name.strip() for name in lines[0]] if lines else []
+    if other := next((sign for sign in ";\t" if any(sign in name for name in head)), ""):
+        shown = {";": "semicolons", "\t": "tabs"}[other]
+        raise InputError(Fault("line 1", None, f"has {shown} between its columns", repair="take commas"))
     if len(set(head)) < len(head) or not all(head):
         raise InputError(Fault("line 1", ", ".join(head), "is not a name for every column, each once"))
     for number, line in enumerate(lines[1:], 2):

@@ -13,6 +13,9 @@ import numpy as np
 
 from porescale.common.core.types import Floats
 
+NEAR_TOUCH = 0.99
+"""Cosine from which on an angle is not taken from it: its error is eps/sin there, 7 eps."""
+
 
 class Outline(NamedTuple):
     """Area, centroid and polar second moment about it, and how much of it every disc shows."""
@@ -56,8 +59,7 @@ def arcs(i: int, at: Floats, size: Floats) -> list[tuple[float, float]]:
             return []  # wholly inside of j, or the second of two equal ones
         if distance >= size[i] + size[j] or distance + size[j] <= size[i]:
             continue
-        cosine = (distance**2 + size[i] ** 2 - size[j] ** 2) / (2.0 * distance * size[i])
-        half, towards = math.acos(min(max(float(cosine), -1.0), 1.0)), math.atan2(way[1], way[0])
+        half, towards = _half_angle(distance, float(size[i]), float(size[j])), math.atan2(way[1], way[0])
         low = (towards - half) % (2.0 * math.pi)
         high = low + 2.0 * half
         covered.append((low, min(high, 2.0 * math.pi)))
@@ -71,6 +73,21 @@ def arcs(i: int, at: Floats, size: Floats) -> list[tuple[float, float]]:
     if reached < 2.0 * math.pi:
         free.append((reached, 2.0 * math.pi))
     return free
+
+
+def _half_angle(d: float, r: float, other: float) -> float:
+    """Half of the angle (rad) under which the centre of a circle of radius ``r`` sees the chord that it has in common
+    with one of radius ``other``, ``d`` away.
+
+    Near a touch its cosine has no digits left, and the two circles would not agree on the ends of their chord.  There
+    both legs give it: half a chord is 1/(2 d) times the root of Heron's product of the three lengths.
+    """
+    adjacent = d**2 + r**2 - other**2
+    cosine = adjacent / (2.0 * d * r)
+    if abs(cosine) < NEAR_TOUCH:
+        return math.acos(cosine)
+    product = (r + other - d) * (d + r + other) * (d + r - other) * (d - r + other)
+    return math.atan2(math.sqrt(max(product, 0.0)), adjacent)
 
 
 def _arc(x: float, y: float, r: float, a: float, b: float) -> Floats:

@@ -44,6 +44,7 @@ PATIENCE = 1500  # checks before the run is given up
 NEAR = 3e-3  # share of the wanted pressure within which it is there
 BALANCE = 3e-3  # mean net force on a disc over the mean contact force that counts as rest
 DEEPEST = 0.02  # overlap over diameter beyond which discs are no longer discs
+ROUNDED = 0.01  # share by which twice a radius may differ from the diameter beside it: lists are rounded
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6}
 COLUMNS = ("x (m)", "y (m)", "radius (m)")
 
@@ -349,8 +350,10 @@ def _table(path: Path, unit: str) -> tuple[Floats, bool]:
     missing = [name for name in wanted if name not in names]
     if missing:
         problem = f"has no column {', '.join(missing)}; its first line is {', '.join(header)[:80]!r}"
-        raise InputError(Fault("file", str(path), problem, "", "x, y and diameter or radius", "add a header line"))
+        repair = "part columns by commas" if len(names) == 1 and {*";\t"} & {*names[0]} else "add a header line"
+        raise InputError(Fault("file", str(path), problem, "", "x, y and diameter or radius", repair))
     places = [names.index(name) for name in wanted]
+    twice = None if by_radius or "radius" not in names else names.index("radius")
     for k in places:
         given = header[k].partition("(")[2].rstrip(") ").strip()
         if given and UNITS.get(given) != UNITS[unit]:
@@ -361,6 +364,9 @@ def _table(path: Path, unit: str) -> tuple[Floats, bool]:
             continue
         try:
             rows.append([float(cells[k]) for k in places])
+            if twice is not None and abs(2.0 * float(cells[twice]) - rows[-1][2]) > ROUNDED * abs(rows[-1][2]):
+                problem = f"line {number} has radius {cells[twice].strip()} and diameter {rows[-1][2]:g}"
+                raise InputError(Fault("file", str(path), problem, repair="leave one of the columns out"))
         except (ValueError, IndexError):
             problem = f"line {number} is {','.join(cells)[:60]!r}"
             raise InputError(Fault("file", str(path), problem, "", "numbers in x, y and size")) from None

@@ -57,7 +57,13 @@ def sample_row(c, y, dx, dy, out):
         while stop < columns and np.floor(dx[stop]) == step_x and np.floor(dy[stop]) == step_y:
             stop += 1
         left, top = start + int(step_x), y + int(step_y)
-        if not (F(left) >= low_x and F(left + stop - start) <= high_x and F(top) >= low_y and F(top) <= high_y):
+        # A run ends where it enters or leaves the picture: where all pixels move alike it is a whole row.
+        inside = F(left) >= low_x and F(left) < high_x and F(top) >= low_y and F(top) <= high_y
+        if inside:
+            stop = min(stop, start + int(high_x) - left)
+        elif F(left) < low_x:
+            stop = min(stop, start + int(low_x) - left)
+        if not inside:
             for x in range(start, stop):  # outside: the nearest sample there is
                 at_x = min(max(F(x) + dx[x], low_x), high_x)
                 at_y = min(max(F(y) + dy[x], low_y), high_y)

@@ -51,6 +51,10 @@ def test_degrees_and_back(degrees: float) -> None:
         ("-9.81 m/s2", "m/s²", -9.81),
         ("1 min", "s", 60.0),
         ("20 degC", "K", 293.15),
+        ("2 Hz", "1/s", 2.0),
+        ("0.5 rad/s", "rad/s", 0.5),
+        ("0.5 1/s", "rad/s", 0.5),
+        ("50 N m/rad", "N m", 50.0),
     ],
 )
 def test_texts_with_units_become_si(text: str, unit: str, value: float) -> None:
@@ -61,6 +65,10 @@ def test_texts_with_units_become_si(text: str, unit: str, value: float) -> None:
     ("value", "unit", "words"),
     [
         ("1 s", "m", "does not measure the same thing as m"),
+        ("60 rpm", "1/s", "is of an angle, 1/s is not; 60 rpm are 1 Hz"),
+        ("1 Hz", "rad/s", "is not of an angle, rad/s is; 1 Hz are 60 rpm"),
+        ("30 degree", "", "of an angle of friction take the tangent"),
+        ("50 %", "rad", "a slope of 50 % is atan(0.5)"),
         ("1 parsnip", "m", "unknown unit 'parsnip'"),
         ("1", "m", "has no unit"),
         ("wide", "m", "is not a number with a unit"),

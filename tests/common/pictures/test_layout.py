@@ -70,6 +70,14 @@ def test_no_text_lies_upon_another_at_any_aspect(style, aspect):
             assert extent.y1 < height + 1, text
 
 
+@pytest.mark.parametrize("letters", ["x" * 300, "é" * 140, "short " + "y" * 200])
+def test_a_title_without_blanks_makes_no_picture_wider(letters):
+    drawn = [stage(survey([box(2.0)], Look(title=it)), [""], screen(1000)).figure for it in ("a box", letters)]
+    plain, long = (it.get_size_inches() for it in drawn)
+    assert long[0] == plain[0]
+    assert long[1] > plain[1]
+
+
 @pytest.mark.parametrize("aspect", ASPECTS)
 def test_panels_are_to_scale_and_the_figure_is_no_larger_than_it_may_be(aspect):
     style = STYLES["paper"]

@@ -1,6 +1,7 @@
 """Pictures and films show what is there, the right way up, to scale, and nothing else."""
 
 import sys
+from dataclasses import replace
 
 import av
 import cv2
@@ -116,6 +117,11 @@ def test_streamlines_only_follow_what_moves():
     middle = painter.y + painter.height // 2
     assert changed[:middle].any()
     assert not changed[middle + 15 :].any()
+    whole = snapshot.grids["fields"]
+    column = {name: it[:, :1] for name, it in whole.cells.items()}  # one cell wide: no lines beside each other
+    narrow = replace(snapshot, grids={"fields": replace(whole, cells=column)})
+    painter = Painter(survey([narrow], Look()))
+    assert (painter.streamlines(narrow) == painter.paint(narrow)).all()
 
 
 @pytest.mark.parametrize("shape", [(4, 60), (60, 4), (20, 20), (700, 900)])

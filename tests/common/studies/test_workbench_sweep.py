@@ -72,6 +72,12 @@ def test_toml_gives_points_as_they_are_and_every_combination(tmp_path):
         ("decay.rate=2", "decay.start=0.5"), ("decay.rate=2", "decay.start=1e-05"),
     ]  # fmt: skip
     assert points[1].value("decay.start") == "0.5"
+    assert points[0].value("decay.rate") == "2 1/s"  # a text as it is, in the tables
+
+
+def test_a_table_tells_of_a_text_what_it_says_whatever_gave_it():
+    point = Point("", ('a="1 mm"', "b=1 mm", 'c=["x", "y"]', 'd="say \\"so\\""', "e=true"))
+    assert [point.value(key) for key in "abcdef"] == ["1 mm", "1 mm", '["x", "y"]', 'say "so"', "true", ""]
 
 
 def test_options_are_split_at_commas_outside_brackets_and_quotes():
@@ -100,6 +106,8 @@ def test_names_are_folders_anywhere_and_differ():
     ("name", "text", "said"),
     [
         ("t.csv", "a,a\n1,2\n", "line 1"),
+        ("t.csv", "a;b\n1 mm;2\n", "line 1: has semicolons between its columns; take commas"),
+        ("t.csv", "a\tb\n1\t2\n", "line 1: has tabs between its columns"),
         ("t.csv", "a,b\n1\n", "line 2: has 1 cells"),
         ("t.csv", "a\n", "points: there are none"),
         ("t.csv", "a\n\xff", "is not UTF-8 text"),

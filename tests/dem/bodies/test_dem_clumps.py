@@ -69,6 +69,21 @@ def test_the_union_of_one_disc_and_of_two_apart_is_known():
     np.testing.assert_allclose(two.exposed, 2 * np.pi, rtol=1e-14)
 
 
+@pytest.mark.parametrize("deep", [3e-17, 1e-16, 1e-14, 1e-11, 1e-8, 1e-5, 0.02, 0.03])
+def test_discs_that_hardly_touch_have_their_centre_on_the_line_between_them(deep):
+    # Both circles must end at the same points of their chord: what they disagree by moves the centre off the line, and
+    # no positive shares of a body are found beyond 1e-13.  50 eps: some ten rounded sums of lengths up to 3.
+    for angle in np.linspace(0.1, 6.2, 50):
+        along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        at, size = np.array([-0.8 * along, (1.2 - deep) * along]), np.array([1.2, 0.8])
+        found = outline(at, size)
+        assert abs(found.centroid @ across) < 50 * np.finfo(float).eps
+        # The lens has 2/3 of chord times depth, 1.31 deep^1.5 for these radii: 0.2 deep^1.5 of both discs.
+        assert abs(found.area / (np.pi * np.sum(size**2)) - 1.0) < 0.22 * deep**1.5 + 50 * np.finfo(float).eps
+        weight = size * found.exposed
+        assert clumps.shares(weight, at - found.centroid, 1.2) is not None
+
+
 def test_overlap_counted_twice_is_no_union():  # the twin that must fail
     at, size = np.array([[0.0, 0.0], [0.7, 0.2]]), np.array([1.0, 0.6])
     assert abs(np.pi * np.sum(size**2) / outline(at, size).area - 1.0) > 0.1

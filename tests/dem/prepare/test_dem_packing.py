@@ -123,6 +123,8 @@ def test_circles_of_a_picture_count_downwards(tmp_path):
     ("x,y,diameter\n1,2,3\n1,two,3\n", "mm", r"line 3 is '1,two,3'"),
     ("x,y,diameter\n1,2,-3\n", "mm", r"circle 0.*radius > 0"),
     ("x (cm),y (cm),diameter (cm)\n1,2,3\n", "mm", r"unit.*says otherwise"),
+    ("x;y;diameter\n1;2;3\n", "mm", r"no column x, y, radius.*part columns by commas"),
+    ("x,y,radius,diameter\n1,2,1.5,3\n1,2,2,5\n", "mm", r"line 3 has radius 2 and diameter 5; leave one of"),
     ("x,y,diameter\n", "mm", r"holds no circle"),
     ("x,y,diameter\n1,2,3\n", "inch", r"unit.*not known"),
 ])  # fmt: skip
