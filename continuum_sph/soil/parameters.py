@@ -104,7 +104,7 @@ class SoilLaw:
         """`stress.CROWD` beyond which sheared soil swells; infinite where particles do not part either."""
         return STREWN * even_crowd(self.smoothing, self.spacing) if self.spacing_recovery > 0.0 else math.inf
 
-    @functools.cached_property
+    @property
     def step_at_rest(self) -> float:
         """The step that sound of the stiffest material, at its reference stress, allows, s."""
         sound2 = max(material.column_modulus / material.density for material in self.materials)

@@ -10,8 +10,8 @@ from tests.reference.folders import CASES
 
 FLOW = {"flow at half of the critical gradient", "flow at nine tenths of the critical gradient"}
 STRESS = {f"stress in the soil {name.removeprefix('flow ')}" for name in FLOW}
-SUNK = {row["name"] for row in expected("infiltration")}
-LATER = {row["name"] for row in expected("consolidation")} - {"the water bears all of the weight at the start"}
+SUNK = {row["name"] for row in expected(CASES / "infiltration")}
+LATER = {row["name"] for row in expected(CASES / "consolidation")} - {"the water bears all of the weight at the start"}
 
 
 @pytest.mark.slow
@@ -22,7 +22,7 @@ LATER = {row["name"] for row in expected("consolidation")} - {"the water bears a
         ("upward_flow", "soil.density=1650", STRESS),  # grains 4 % heavier; none of the flow
         ("infiltration", "soil.permeability=0.035", SUNK),
         ("consolidation", "soil.permeability=1.2e-3", LATER),  # a fifth sooner
-        ("consolidation", "soil.stress=geostatic", {row["name"] for row in expected("consolidation")}),
+        ("consolidation", "soil.stress=geostatic", {row["name"] for row in expected(CASES / "consolidation")}),
     ],
 )  # fmt: skip
 def test_other_soil_misses_the_rows_that_speak_of_it(case, setting, names, tmp_path):
