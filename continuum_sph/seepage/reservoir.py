@@ -4,9 +4,9 @@ What stands in a strip is measured by its weight above a line two spacings over 
 
     level = line + Σ w(x_i, y_i) m_i/(ρ0 ∫ w dx)
 
-so that the head on what lies below is exact, however the particles are packed and whatever is below the line: over
-ground, whose grains kernels smear over two spacings and more, a row of water holds 0.05 to 0.2 less than one in the
-open, and what flows out of it stood 0.1 spacings too high where it was weighed from the bottom.  w is 1 but for cosine
+so that the head on what lies below is exact, however the particles are packed and whatever is below the line: kernels
+smear the grains of ground over two spacings and more, its lowest rows of water hold 0.15 of a row less than in the
+open, and what flowed out of it stood 0.1 spacings too high where it was weighed from the bottom.  w is 1 but for cosine
 ramps at the ends that lie in the water: a column of particles that crosses an end would else change the level by its
 whole share.  So would a row that crosses the line, and water that rises by a fraction of a row would be let stand as
 much too high: there a straight ramp of a spacing, the distance of rows in the open, takes in rows in part.  Water less
