@@ -29,5 +29,5 @@ def test_other_soil_misses_the_rows_that_speak_of_it(case, setting, names, tmp_p
     out = tmp_path / "out"
     words = ["run", str(CASES / case), "--out", str(out), "--quiet", "--set", setting, "--set", "output.report=false"]
     assert main(application(PACKAGE), words) == 0
-    found = missed(open_run(out).series, expected(case), open_run(out).table)
+    found = missed(open_run(out).series, expected(CASES / case), open_run(out).table)
     assert {it.partition(":")[0] for it in found} == names
