@@ -55,7 +55,8 @@ def test_a_reservoir_on_ground_or_in_open_water_has_its_level(bottom):
 
 
 def test_kernels_smear_grains_so_that_weight_over_ground_is_no_level(monkeypatch):
-    monkeypatch.setattr(reservoir, "ABOVE", 0.0)  # the twin that must fail
+    # The twin that must fail, by more than the 0.03 rows that are allowed above; seen: -0.15.
+    monkeypatch.setattr(reservoir, "ABOVE", 0.0)
     assert off(0.08) < -0.05
 
 
