@@ -16,6 +16,8 @@ LONGEST = 64
 """Characters of a unit: the parser recurs into what is longer."""
 CYCLES = ("hertz",)
 """How names of units end that count cycles a second."""
+TYPE_SIZES = ("point", "pica", "didot", "cicero")
+"""How names of units end that printers measure letters in."""
 # No unit has a power of a power or a three-digit number; both would make the parser compute for ever.
 _ABSURD = re.compile(r"\d\s*(\*\*|\^)|\d{3}")
 
@@ -68,6 +70,7 @@ def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
 
     registry = _registry()
     given, wanted = _parse(source), _parse(unit)
+    _require_one_meaning(source, given)
     try:
         zero = registry.Quantity(Decimal(0), given).to(wanted).magnitude
         one = registry.Quantity(Decimal(1), given).to(wanted).magnitude
@@ -75,6 +78,22 @@ def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
         raise ValueError(f"{source!r} does not measure the same thing as {unit or 'a plain number'}") from None
     _require_same_count(source, given, unit, wanted)
     return one - zero, zero
+
+
+def _require_one_meaning(source: str, given: Any) -> None:
+    """ValueError for units that Pint reads as something else than a laboratory means: to it a pixel is 1/96 inch, a
+    point 1/72 inch, a ton 2000 pounds; and for those of logarithms, which it does not convert in decimals."""
+    registry = _registry()
+    for name in given._units:
+        if name.endswith(("pixel", "dot")):
+            raise ValueError(f"{source!r} names a pixel, which has no length of its own; write that of one, in mm")
+        if name.endswith(TYPE_SIZES):
+            raise ValueError(f"{source!r} is a size of letters; write mm")
+        if name in ("ton", "force_ton"):
+            metric = "t" if name == "ton" else "tf"
+            raise ValueError(f"{source!r} could be 1000 kg or 2000 pounds; write {metric} for the first, kg or lb")
+        if registry._units[name].is_logarithmic:
+            raise ValueError(f"{source!r} is of a logarithm; write the number itself")
 
 
 def _require_same_count(source: str, given: Any, unit: str, wanted: Any) -> None:

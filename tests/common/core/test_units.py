@@ -55,6 +55,8 @@ def test_degrees_and_back(degrees: float) -> None:
         ("0.5 rad/s", "rad/s", 0.5),
         ("0.5 1/s", "rad/s", 0.5),
         ("50 N m/rad", "N m", 50.0),
+        ("1.6 t/m^3", "kg/m^3", 1600.0),
+        ("2 tf/m^2", "Pa", 19613.3),
     ],
 )
 def test_texts_with_units_become_si(text: str, unit: str, value: float) -> None:
@@ -69,6 +71,12 @@ def test_texts_with_units_become_si(text: str, unit: str, value: float) -> None:
         ("1 Hz", "rad/s", "is not of an angle, rad/s is; 1 Hz are 60 rpm"),
         ("30 degree", "", "of an angle of friction take the tangent"),
         ("50 %", "rad", "a slope of 50 % is atan(0.5)"),
+        ("1 px", "m", "'px' names a pixel, which has no length of its own"),
+        ("0.05 mm/px", "m", "'mm/px' names a pixel, which has no length of its own"),
+        ("3 point", "m", "is a size of letters"),
+        ("1.6 ton/m^3", "kg/m^3", "could be 1000 kg or 2000 pounds; write t for the first"),
+        ("2 ton_force/m^2", "Pa", "write tf for the first"),
+        ("3 dB", "", "is of a logarithm"),
         ("1 parsnip", "m", "unknown unit 'parsnip'"),
         ("1", "m", "has no unit"),
         ("wide", "m", "is not a number with a unit"),
