@@ -14,7 +14,7 @@ from cyclopts import Parameter
 from porescale.cli.homogenise_rates import Rates, known_of, sheared, table_of
 from porescale.cli.homogenise_rates import about as about_rates
 from porescale.common.api.folders import output_folder
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say, use_threads
+from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say, use_threads
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, conclude, enlist, laid_over
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
@@ -50,7 +50,7 @@ def homogenise(
     ] = None,
     out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _soil if not given")] = None,
     jobs: Jobs = None,
-    threads: Threads = 1,
+    threads: ThreadsOfEach = 1,
     scheduler: Scheduler = None,
     again: Again = False,
 ) -> int:

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 
 from porescale.cli.homogenise import homogenise
 from porescale.common.api.folders import output_folder
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
+from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, Vary, laid_over
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def volume(
     settings: Settings = None,
     out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _volume if not given")] = None,
     jobs: Jobs = None,
-    threads: Threads = 1,
+    threads: ThreadsOfEach = 1,
     scheduler: Scheduler = None,
     again: Again = False,
 ) -> int:

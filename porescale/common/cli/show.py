@@ -83,10 +83,12 @@ def _figure(package: Package, folder: Path, asked: Asked) -> Path:
 
 def _parts(text: str | None) -> Any:
     """The parts of a list with commas: numbers, and texts with a unit."""
-    return None if text is None else tuple(_part(part.strip()) for part in text.split(","))
+    return None if text is None else tuple(_part(part) for part in text.split(","))
 
 
 def _part(text: str) -> float | str:
+    """A number, or a text with a unit, which may stand in quotes as in a scene."""
+    text = text.strip().strip("\"'")
     try:
         return float(text)
     except ValueError:
