@@ -30,7 +30,8 @@ OPENPIV = ("x", "y", "u", "v", "flags", "mask")
 class Field:
     """Vectors on a grid, rows from the top of the picture down.
 
-    x (nx,), y (ny,) : px or m;  u, v (ny, nx) : px a frame or m/s, nan in solids, finite elsewhere;  valid, replaced,
+    x (nx,), y (ny,) : px, whole numbers at the middles of pixels, y down, or m from the lower left corner of the
+    picture, y up;  u, v (ny, nx) : px a frame or m/s, nan in solids, finite elsewhere;  valid, replaced,
     solid (ny, nx) : flags;  correlation, uncertainty (ny, nx) : the latter as u, infinite where replaced;  upwards :
     whether y points up, as it does in metres;  time : in the middle between the two pictures, s (frames where their
     interval is not given), None where it is not known.
