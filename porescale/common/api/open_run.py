@@ -184,7 +184,7 @@ class Run(record.Run):
 
         stem = self.folder / "film" if path is None else Path(path)
         stem = stem.with_suffix("") if stem.suffix in (".mp4", ".webm") else stem
-        return Film(film_of(self, self._painter_of(words), stem, rate))
+        return Film(film_of(self, self._painter_of(words, ("rate",)), stem, rate))
 
     def figure(
         self, path: Path | str | None = None, *, against: Run | None = None, **words: Unpack[FigureWords]
@@ -199,6 +199,9 @@ class Run(record.Run):
         from porescale.common.pictures.figure import figure_of, write_figure
 
         wanted = wanted_of(Wanted, words)
+        if against is not None and not isinstance(against, Run):
+            problem, repair = f"is no run ({type(against).__name__})", "give one of open_run"
+            raise InputError(Fault("against", str(against), problem, repair=repair))
         runs = [self] if against is None else [self, against]
         for run in runs:
             run._require_own()
@@ -246,12 +249,15 @@ class Run(record.Run):
         self._require_own()
         return painter_of(self, self.program.look(self))
 
-    def _painter_of(self, words: LookWords) -> Painter:
-        """What paints snapshots as ``words`` ask for."""
-        from porescale.common.pictures.choose import Wanted
+    def _painter_of(self, words: LookWords, others: Sequence[str] = ()) -> Painter:
+        """What paints snapshots as ``words`` ask for;  others : what messages name as known besides."""
+        from porescale.common.pictures.choose import LookWords, Wanted
         from porescale.common.pictures.picture import painter_of
 
-        wanted = wanted_of(Wanted, words)
+        wanted = wanted_of(Wanted, words, (*LookWords.__annotations__, *others))
+        if isinstance(wanted.size, str):
+            repair = "give pixels, 200 to 8000; a width is that of run.figure"
+            raise InputError(Fault("size", wanted.size, "is no number of pixels", repair=repair))
         if wanted.plain or not len(self):
             return self._painter
         self._require_own()
@@ -318,9 +324,12 @@ class Run(record.Run):
         return f"{text}<img style='max-width:100%' src='data:image/png;base64,{b64encode(picture).decode()}'>"
 
 
-def wanted_of(kind: type[Wanted], words: Mapping[str, Any]) -> Wanted:
-    """Words of Python as what is wanted; InputError, with the nearest, for a word that is none."""
-    known = [it.name for it in fields(kind)]
+def wanted_of(kind: type[Wanted], words: Mapping[str, Any], known: Collection[str] = ()) -> Wanted:
+    """Words of Python as what is wanted; InputError, with the nearest, for a word that is none.
+
+    known : the words that there are (empty: all of ``kind``).
+    """
+    known = known or [it.name for it in fields(kind)]
     for name in words:
         if name not in known:
             raise missing("argument", name, known, "those of pictures")

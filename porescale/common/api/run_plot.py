@@ -23,6 +23,10 @@ def plot(table: Columns, columns: Sequence[str], ax: Axes | None = None) -> Any:
     if not columns:
         names = ", ".join(name for name in table if name != TIME)
         raise InputError(Fault("columns", None, "none named", allowed=names, repair="name one or more"))
+    for column in columns:
+        if not isinstance(column, str):
+            repair = 'write run.plot("front (m)", "…")'
+            raise InputError(Fault("columns", str(column), f"is no name but {type(column).__name__}", repair=repair))
     by_unit: dict[str, list[str]] = {}
     for column in columns:
         table[column]

@@ -16,6 +16,7 @@ from porescale.common.api.load_scene import Settings, setting_texts
 from porescale.common.api.shipped import scene_path
 from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.extras import extra
+from porescale.common.core.ranges import Range
 from porescale.common.schema import scene_file
 
 if TYPE_CHECKING:
@@ -52,9 +53,11 @@ def sweep(
     from porescale.common.studies.sweep_files import ensemble_lines, keys_of, lines_of
 
     pd = extra("pandas")
-    for name, value in (("jobs", jobs), ("threads", threads)):
-        if value < 1:
-            raise InputError(Fault(name, value, "is out of range", "", ">= 1"))
+    for name, value in (("jobs", jobs), ("threads", threads), ("repeat", 1 if repeat is None else repeat)):
+        if (fault := Range(ge=1, whole=True).fault_of(name, value)) is not None:
+            raise InputError(fault)
+    if over is not None and not isinstance(over, str):
+        raise InputError(Fault("over", str(over), "is no text", repair='give "section.key", or "section.key=a,b,c"'))
     asked = Repeats(repeat, over, ("repeat", "over", "vary"))
     points, texts = points_of(vary, asked), setting_texts(settings)
     with _as_file(program, scene, quality) as start:
@@ -92,6 +95,9 @@ def points_of(vary: Vary | None, asked: Repeats | None = None) -> list[Point]:
 
     if isinstance(vary, str | Path):
         return read_points(Path(vary))
+    if vary is not None and not isinstance(vary, Mapping | Sequence):
+        repair = 'give {"contact.friction": [0.2, 0.5]}; of a DataFrame, its to_dict("records")'
+        raise InputError(Fault("vary", type(vary).__name__, "is neither a mapping nor a list of them", repair=repair))
     if not vary:
         if asked:
             return [Point(AS_IT_IS, ())]
@@ -101,7 +107,9 @@ def points_of(vary: Vary | None, asked: Repeats | None = None) -> list[Point]:
         return named([Point("", setting_texts(each)) for each in vary])
     faults, choices = [], []
     for key, values in vary.items():
-        if isinstance(values, str | Mapping) or (not isinstance(values, Sequence) and not hasattr(values, "tolist")):
+        if isinstance(values, str | Mapping) or not (
+            isinstance(values, Sequence) or len(getattr(values, "shape", ())) == 1
+        ):
             faults.append(Fault(f"vary.{key}", str(values), "is not a list of values"))
         elif not len(values):
             faults.append(Fault(f"vary.{key}", "[]", "holds no value", repair="leave the key out"))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.ranges import Range
 from porescale.common.pictures.layout import COLUMN, STYLES, Style, screen
 from porescale.common.record.columns import missing
 from porescale.common.schema.quantity import Quantity, Refused
@@ -92,9 +93,7 @@ class Wanted:
             raise InputError(Fault("fps", self.fps, f"is of films, {chosen} is a still", repair=repair))
         fastest = 50 if chosen == "gif" else 120  # browsers show frames of a GIF for 20 ms at least
         for key, most in (("fps", fastest), ("every", 1_000_000)):
-            value = getattr(self, key)
-            if value is not None and not 1 <= value <= most:
-                raise InputError(Fault(key, value, "is out of range", allowed=f"1 to {most}"))
+            _require_whole(key, getattr(self, key), 1, most)
         return chosen
 
     def styled(self, panels: int, look: Look) -> Style:
@@ -127,13 +126,11 @@ class Wanted:
         if self.colour_limits is not None:
             made = replace(made, cloud_limits=limits_of("colour_limits", self.colour_limits, _unit(made, run)))
         if self.arrows is not None:
-            if not 0 <= self.arrows <= 500:
-                raise InputError(Fault("arrows", self.arrows, "is out of range", allowed="0 to 500"))
-            made = replace(made, arrows=self.arrows)
-        if isinstance(self.size, int):
-            if not 200 <= self.size <= 8000:
-                raise InputError(Fault("size", self.size, "is out of range", allowed='200 to 8000 pixels, or "85 mm"'))
-            made = replace(made, size=self.size)
+            _require_whole("arrows", self.arrows, 0, 500)
+            made = replace(made, arrows=int(self.arrows))
+        if self.size is not None and not isinstance(self.size, str):
+            _require_whole("size", self.size, 200, 8000, ' pixels, or "85 mm"')
+            made = replace(made, size=int(self.size))
         return made if self.view is None else replace(made, view=self._view(look, run))
 
     def _of_field(self, look: Look, run: Run) -> Look:
@@ -236,6 +233,13 @@ def _unit(look: Look, run: Run) -> str:
     last = run.snapshot(-1)
     clouds = (it for it in (look.drawn(last), look.shaped(last)) if it is not None)
     return next((cloud.units.get(look.colouring(cloud), "") for cloud in clouds if look.colouring(cloud)), "")
+
+
+def _require_whole(key: str, value: Any, least: int, most: int, more: str = "") -> None:
+    """InputError unless ``value`` is None or a whole number within the range;  more : what else is allowed."""
+    if value is not None and Range(ge=least, le=most, whole=True).fault_of(key, value) is not None:
+        shown = value if isinstance(value, int | float) else str(value)
+        raise InputError(Fault(key, shown, "is out of range", allowed=f"whole, {least} to {most}{more}"))
 
 
 def limits_of(key: str, pair: Pair, unit: str) -> tuple[float, float]:

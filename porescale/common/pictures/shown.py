@@ -6,6 +6,7 @@ from html import escape
 from pathlib import Path
 
 from porescale.common.core.atomic import write_bytes
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import AnyArray
 
 LARGEST = 50 * 2**20
@@ -20,9 +21,13 @@ class Picture:
     title: str = ""
 
     def save(self, path: Path | str) -> Path:
-        """Write it as a PNG file, whole or not at all; returns the path."""
-        write_bytes(Path(path), self._repr_png_())
-        return Path(path)
+        """Write it as a PNG file, whole or not at all; returns the path.  InputError for a name of another format."""
+        path = Path(path)
+        if path.suffix.lower() not in ("", ".png"):
+            repair = f"name it {path.stem}.png; run.figure writes other formats"
+            raise InputError(Fault("path", str(path), "is not that of a PNG file", repair=repair))
+        write_bytes(path, self._repr_png_())
+        return path
 
     def __repr__(self) -> str:
         height, width = self.pixels.shape[:2]

@@ -4,6 +4,8 @@ import csv
 import math
 from pathlib import Path
 
+import numpy as np
+import pandas
 import pytest
 
 import porescale
@@ -156,6 +158,8 @@ def test_a_run_that_does_not_finish_is_a_warning_and_a_row(scene, ran, tmp_path)
         ({"contact.frction": [1.0]}, "did you mean 'friction'?"),
         ({"contact.friction": 0.5}, "vary.contact.friction = '0.5': is not a list of values"),
         ({"contact.friction": []}, "vary.contact.friction = '[]': holds no value"),
+        ({"contact.friction": np.array(0.5)}, "vary.contact.friction = '0.5': is not a list of values"),
+        (pandas.DataFrame({"contact.friction": [0.5]}), 'of a DataFrame, its to_dict("records")'),
         ({"contact.friction": [-1.0, -1.0]}, "contact.friction = -1"),
     ],
 )
@@ -170,7 +174,11 @@ def test_what_is_wrong_is_said_before_anything_runs(scene, ran, tmp_path, vary, 
 
 
 def test_wrong_options_are_named(scene, tmp_path):
-    for options, said in (({"jobs": 0}, "jobs = 0: is out of range"), ({"threads": 0}, "threads = 0")):
+    for options, said in (
+        ({"jobs": 0}, "jobs = 0: is out of range"), ({"jobs": "2"}, "jobs = '2': is no number"),
+        ({"threads": 0}, "threads = 0"), ({"threads": True}, "threads = 'True': is no number"),
+        ({"repeat": 2.5}, "repeat = 2.5: is no whole number"), ({"repeat": 2, "over": {"a": 1}}, "over = .*: is no text"),
+    ):  # fmt: skip
         with pytest.raises(InputError, match=said):
             porescale.sweep(scene, VARY, tmp_path / "out", **options)
     with pytest.raises(InputError, match="scene = 'int': is no scene of porescale"):

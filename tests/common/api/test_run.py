@@ -249,6 +249,29 @@ def test_notebooks_show_pictures_tables_and_films(run, tmp_path):
     assert run.folder / "final.png" in run.show()
 
 
+@pytest.mark.parametrize(
+    ("use", "said"),
+    [
+        (lambda run: run.picture(size="85 mm"), "size = '85 mm': is no number of pixels"),
+        (lambda run: run.picture(size=300.5), "size = 300.5: is out of range .allowed: whole, 200 to 8000"),
+        (lambda run: run.picture(arrows="5"), "arrows = '5': is out of range .allowed: whole, 0 to 500"),
+        (lambda run: run.picture(times=[0.0]), "argument = 'times': is not in those of pictures"),
+        (lambda run: run.film(fps=10), "argument = 'fps': .*known arguments: .*rate"),
+        (lambda run: run.figure(against="runs/other"), "against = 'runs/other': is no run"),
+        (lambda run: run.picture().save("picture.jpg"), "path = 'picture.jpg': is not that of a PNG file"),
+        (lambda run: run.plot(["front (m)"]), "is no name but list"),
+    ],
+)
+def test_words_that_a_picture_cannot_follow_are_refused(run, use, said):
+    with pytest.raises(InputError, match=said):
+        use(run)
+
+
+def test_sizes_of_numpy_are_sizes(run):
+    assert run.picture(size=np.int64(300)).pixels.shape == run.picture(size=300).pixels.shape
+    assert run.picture(size=300).pixels.shape != run.picture().pixels.shape  # the check that must fail
+
+
 def test_what_a_missing_library_says(run, monkeypatch):
     for library, use in (("pandas", run.series.to_pandas), ("xarray", run.xarray), ("pyvista", run.vtk)):
         use()
