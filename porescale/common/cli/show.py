@@ -1,7 +1,7 @@
 """`show RUN`: pictures and a film of a run, or the figure that is asked for."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -48,9 +48,11 @@ def command(package: Package) -> Callable[..., int]:
             return 0
         also = package.also.get(str(read_card(run).get("package")))
         if also is not None:
+            _require_room(run)
             _say(also(run))
             return 0
         _require_own(package, run)
+        _require_room(run)
         _say(package.show(run))
         return 0
 
@@ -71,6 +73,8 @@ def _figure(package: Package, folder: Path, asked: Asked) -> Path:
     wanted.kind(asked.out)
     if asked.out is not None:
         require_writable(asked.out.parent, "--out")
+    else:
+        _require_room(folder)
     runs = [folder, *([asked.against] if asked.against is not None else [])]
     looked = []
     for each in runs:
@@ -102,6 +106,15 @@ def _require_own(package: Package, run: Path) -> None:
     if missing:
         problem = f"{CARD} is damaged or not that of {package.name} (its scene has no {', '.join(missing)})"
         raise InputError(Fault("run folder", str(run), problem, repair="name another folder"))
+
+
+def _require_room(run: Path) -> None:
+    """InputError unless pictures can be written into the run folder; says how to have one elsewhere."""
+    try:
+        require_writable(run, "run folder")
+    except InputError as error:
+        repair = "write one figure or film elsewhere, with --out FILE"
+        raise InputError([replace(fault, repair=repair) for fault in error.faults]) from None
 
 
 def _say(paths: Iterable[Path]) -> None:

@@ -291,6 +291,27 @@ def test_a_place_that_cannot_be_written_is_refused_before_anything_is_drawn(deca
     assert "--picture = 'file': cannot be written" in refused(decay, "check", "decay", "--picture", "file/own.png")
 
 
+def test_a_run_folder_that_cannot_be_written_is_shown_elsewhere(decay, monkeypatch) -> None:
+    """A share that is only read: pictures ended in the name of a file that is being written, with exit code 1."""
+    decay("run", "decay")
+    before, touch = sorted(Path("runs/decay").iterdir()), Path.touch
+
+    def withheld(path: Path, **words: Any) -> None:
+        if path.parent.name == "decay":
+            raise PermissionError(13, "Permission denied", str(path))
+        touch(path, **words)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "touch", withheld)
+        for options in ((), ("--times", "0.1")):
+            assert refused(decay, "show", "runs/decay", *options) == (
+                "run folder = 'runs/decay': cannot be written (Permission denied); "
+                "write one figure or film elsewhere, with --out FILE"
+            )
+    assert sorted(Path("runs/decay").iterdir()) == before
+    assert decay("show", "runs/decay")[0] == 0  # the twin
+
+
 def test_a_card_whose_scene_lacks_what_every_scene_has_is_not_shown(toy) -> None:
     Path("card.json").write_text('{"package": "toy", "scene": {"duration": 1}}')
     assert "its scene has no decay" in refused(toy, "show", ".")
