@@ -174,7 +174,7 @@ class PoreInstruments(Part):
         """A row of each table of the instruments.
 
         NAME discharge (m2/s) : flow of water to the right through the section of the level
-        NAME open depth (m) : depth of the water in the strip of the level that lies in no soil
+        NAME open depth (m) : depth of the water in the strip of the level that lies in no soil, less the row next to it
         """
         flow, layer, law, n = self.flow, self.flow.layer, self.flow.law, self.flow.layer.fluid
         there = (layer.mass[:n] > 0.0) & (layer.material[:n] != GAS)

@@ -10,7 +10,7 @@ from continuum_sph.builders.parts.held_soil import held_ground
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
 from continuum_sph.builders.parts.soil import material_of, porous_section, soil_flow, soil_section
-from continuum_sph.builders.parts.water import wall_layers, water_law, water_particles, water_state
+from continuum_sph.builders.parts.water import surface_over, wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
@@ -64,7 +64,7 @@ def wet_height(scene: Scene, x: Floats) -> Floats:
     for column in scene.water.column:
         over = (x[:, 0] > column.left) & (x[:, 0] < column.left + column.width)
         top = column.bottom + column.height
-        found = np.where(over & (x[:, 1] < top), np.maximum(found, top - np.maximum(x[:, 1], column.bottom)), found)
+        found = np.where(over & (x[:, 1] < top), found + (top - np.maximum(x[:, 1], column.bottom)), found)
     return found
 
 
@@ -122,7 +122,8 @@ def leave_to_water(scene: Scene, ground: SoilFlow, x: Floats, v: Floats, rho: Fl
 
 def pore_water(scene: Scene, soil: Floats) -> tuple[Floats, Floats]:
     """Places (k, 2) m of the water in pores of ``soil`` (s, 2) m that no column of water holds and that are full at the
-    start, and their depths (k,) m under the surface of the ground or the water table."""
+    start, and their depths (k,) m under the surface of the ground or the water table, or of the water that stands on
+    it."""
     pores = dry_pores(scene.water.column, soil)
     top = wet_top(scene, pores)
     if top is None:
@@ -130,14 +131,20 @@ def pore_water(scene: Scene, soil: Floats) -> tuple[Floats, Floats]:
     if soil_section(scene).water_table is not None:
         under = pores[:, 1] < top
         pores, top = pores[under], top[under]
-    return pores, top - pores[:, 1]
+    return pores, surface_over(scene, pores, top) - pores[:, 1]
 
 
 def saturate(scene: Scene, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
     """Places, velocities (n, 2) and densities (n,) of water with that in pores of ``soil`` (s, 2) m that have none and
-    lie under the surface of the ground or the water table: at rest."""
+    lie under the surface of the ground or the water table: at rest, as are columns that end below full pores."""
     pores, depth = pore_water(scene, soil)
     more = water_state(scene).settled_density(depth, scene.gravity)
+    table = wet_top(scene, x)
+    if table is not None and scene.water.pressure == "hydrostatic":
+        inside = np.any([body.holds(x) for body in soil_section(scene).body], axis=0) & (table > x[:, 1])
+        over = surface_over(scene, x, np.where(inside, table, x[:, 1]))
+        alone = surface_over(scene, x, x[:, 1])
+        rho = np.where(over > alone, water_state(scene).settled_density(over - x[:, 1], scene.gravity), rho)
     return np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores))), np.concatenate((rho, more))
 
 

@@ -226,6 +226,16 @@ def wall_layers(law: Law, spacing: float) -> int:
     return math.ceil(SUPPORT * law.smoothing.length / spacing - 0.5 - 1e-9)
 
 
+def surface_over(scene: Scene, x: Floats, start: Floats) -> Floats:
+    """Height (m) of the surface of the water that stands over ``x`` (n, 2) m without a gap, (n,): from heights
+    ``start`` (n,) up through every column of water that stands on what is below it."""
+    slack, top = 0.5 * scene.numerics.spacing, start.copy()
+    for column in sorted(scene.water.column, key=lambda it: it.bottom):
+        over = (x[:, 0] > column.left) & (x[:, 0] < column.left + column.width) & (column.bottom <= top + slack)
+        top = np.where(over, np.maximum(top, column.bottom + column.height), top)
+    return top
+
+
 def water_particles(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
     """Positions (n, 2) m, velocities (n, 2) m/s and densities (n,) kg/m³ of the water at the start."""
     water, spacing, tait = scene.water, scene.numerics.spacing, water_state(scene)
@@ -234,7 +244,7 @@ def water_particles(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
         corner = (column.left, column.bottom)
         x = square_lattice(corner, (column.left + column.width, column.bottom + column.height), spacing)
         top = column.bottom + column.height
-        depth = top - x[:, 1]
+        depth = surface_over(scene, x, np.full(len(x), top)) - x[:, 1]
         if water.pressure == "hydrostatic" or (water.pressure == "released" and scene.inclusion):
             rho = tait.settled_density(depth, scene.gravity)
         elif water.pressure == "released" and scene.inclusion is None:
@@ -245,7 +255,7 @@ def water_particles(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
         v = np.zeros_like(x)
         if water.push == "face":
             face = x[:, 0] > x[:, 0].max() - 0.5 * spacing
-            v[face, 0] = np.sqrt(2.0 * scene.gravity * depth[face])
+            v[face, 0] = np.sqrt(2.0 * scene.gravity * (top - x[face, 1]))
         positions.append(x)
         velocities.append(v)
         densities.append(rho)

@@ -1,0 +1,80 @@
+"""Water laid in several rectangles, on each other or on full ground, starts at rest under all that stands on it."""
+
+import numpy as np
+import pytest
+
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.scene.sections import Scene
+from continuum_sph.soil.stress import YY
+from porescale.common.schema.sections import validate
+
+WIDE, GROUND, LEVEL, SPACING = 0.6, 0.5, 0.9, 0.05  # m
+SOIL = {"density": 1500.0, "porosity": 0.4, "body": [{"outline": [[0, 0], [WIDE, 0], [WIDE, GROUND], [0, GROUND]]}]}
+ROUND_OFF = 1e-13
+"""Heights are sums of two numbers in one scene and of four in another: some eps, times γ - 1 = 6 in the density."""
+
+
+def simulation(columns, **more):
+    """Water in ``columns``, (bottom, top) each."""
+    table = {
+        "tank": {"width": WIDE, "height": 1.2, "lid": False},
+        "water": {
+            "sound_speed": 60.0,
+            "column": [{"width": WIDE, "bottom": low, "height": high - low} for low, high in columns],
+        },
+        "numerics": {"spacing": SPACING},
+        "time": {"end": 1.0},
+        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
+    }
+    return Simulation(validate(Scene, table | more))
+
+
+def densities(made):
+    """Of the particles of water, kg/m³, by height and place."""
+    layer = getattr(made.flow, "water", made.flow).layer
+    x = np.round(layer.x[: layer.fluid], 9)
+    return layer.density[: layer.fluid][np.lexsort((x[:, 0], x[:, 1]))]
+
+
+def upright(made):
+    """Upright effective stress of the soil at the start, Pa, (n,)."""
+    soil = made.flow.ground.soil
+    return soil.stress[: soil.soil, YY]
+
+
+@pytest.mark.parametrize(
+    "columns", [[(0.0, 0.5), (0.5, 0.9)], [(0.5, 0.9), (0.0, 0.5)], [(0.0, 0.3), (0.6, 0.9), (0.3, 0.6)]]
+)
+def test_columns_on_each_other_weigh_as_one(columns):
+    one = densities(simulation([(0.0, LEVEL)]))
+    assert densities(simulation(columns)) == pytest.approx(one, rel=ROUND_OFF)
+    # the check that must fail: what hangs over a gap of a row weighs nothing on what is below
+    apart = densities(simulation([(0.0, 0.45), (0.5, 0.9)]))
+    assert apart.max() < one.max() - 0.4 * (one.max() - 1000.0)
+
+
+def test_a_column_on_a_part_of_another_weighs_there_alone():
+    table = [{"width": WIDE, "height": 0.4}, {"left": 0.3, "width": 0.3, "bottom": 0.4, "height": 0.4}]
+    made = simulation([], water={"column": table, "sound_speed": 60.0})
+    layer = getattr(made.flow, "water", made.flow).layer
+    x, rho = layer.x[: layer.fluid], layer.density[: layer.fluid]
+    low = np.abs(x[:, 1] - 0.5 * SPACING) < 1e-6
+    p = made.flow.law.state.pressure(rho)
+    top = np.where(x[low, 0] > 0.3, 0.8, 0.4)
+    # of the depth, with the compression of the water below it, ρ g d/(2 ρ c²) = 0.1 % at 60 m/s
+    assert p[low] == pytest.approx(9810.0 * (top - x[low, 1]), rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("saturated", "columns"),
+    [(True, [(0.5, 0.9)]), (True, [(0.0, 0.3), (0.5, 0.9)]), (False, [(0.0, 0.5), (0.5, 0.9)])],
+)
+def test_pores_bear_the_water_over_the_ground_and_lift_its_grains(saturated, columns):
+    whole = simulation([(0.0, LEVEL)], soil=SOIL)
+    made = simulation(columns, soil=SOIL | {"saturated": saturated})
+    assert densities(made) == pytest.approx(densities(whole), rel=ROUND_OFF)
+    assert upright(made) == pytest.approx(upright(whole), rel=1e-12)  # some sums of heights
+    assert upright(whole).max() < 0.7 * SOIL["density"] * 9.81 * GROUND  # so it is less buoyancy
+    # the check that must fail: the same ground under no open water
+    bare = simulation([], soil=SOIL | {"saturated": True})
+    assert densities(bare).max() < densities(whole).max() - 0.4 * (densities(whole).max() - 1000.0)
