@@ -191,6 +191,8 @@ class Scene(SceneBase):
         for k, it in enumerate(self.probe):
             if it.x > width or it.y > height:
                 found.append(Fault(f"probe[{k}]", (it.x, it.y), "lies outside of the tank", "m"))
+            else:
+                found += it.unfilled(f"probe[{k}]", (width, height), self.numerics.spacing)
         for k, level in enumerate(self.level):
             if level.x > width:
                 found.append(Fault(f"level[{k}].x", level.x, "lies outside of the tank", "m", f"<= {width:g}"))

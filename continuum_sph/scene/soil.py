@@ -15,6 +15,10 @@ from porescale.common.core.types import Floats
 from porescale.common.schema.names import name_faults
 from porescale.common.schema.sections import Section, quantity
 
+ON_A_SIDE = 1e-9
+"""Distance to a side, over the largest coordinate of an outline, within which a point is on it: a slope of 1 : 1 runs
+through centres of the lattice, where round-off would decide, and left and right sides would differ."""
+
 
 class Outline(Section):
     """A closed polygon: corners (x, y), m, in order."""
@@ -47,13 +51,18 @@ class Outline(Section):
         )
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
-        """Which of ``points`` (n, 2) m lie inside: an odd number of sides to their right."""
+        """Which of ``points`` (n, 2) m lie inside (an odd number of sides to their right), or on a side."""
         x, y = points[:, 0], points[:, 1]
-        inside = np.zeros(len(points), np.bool_)
+        inside, on = np.zeros(len(points), np.bool_), np.zeros(len(points), np.bool_)
+        near = ON_A_SIDE * np.abs(self.outline).max()
         for (ax, ay), (bx, by) in zip(self.outline, (*self.outline[1:], self.outline[0]), strict=True):
             if ay != by:
                 inside ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) * ((bx - ax) / (by - ay)))
-        return inside
+            dx, dy = bx - ax, by - ay
+            way = ((x - ax) * dx + (y - ay) * dy) / (max(dx * dx + dy * dy, near * near) or 1.0)
+            along = np.clip(way, 0.0, 1.0)
+            on |= np.hypot(x - ax - along * dx, y - ay - along * dy) < near
+        return inside | on
 
 
 class Body(Outline):

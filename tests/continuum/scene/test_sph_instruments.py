@@ -138,6 +138,14 @@ def test_a_probe_with_one_side_is_refused():
     [
         ({"probe": [{"x": 2.5, "y": 0.1}]}, r"^probe\[0\] = \(2\.5, 0\.1\) m: lies outside of the tank"),
         ({"level": [{"x": 2.5}]}, r"^level\[0\]\.x = 2\.5 m: lies outside of the tank"),
+        (
+            {"probe": [{"x": 0.1, "y": 0.1, "width": 0.3, "height": 0.1}]},
+            r"^probe\[0\]\.width = 0\.3 m: reaches out of the tank .allowed: <= 0\.2 m.; narrow it",
+        ),
+        (
+            {"probe": [{"x": 0.1, "y": 0.1, "width": 0.2, "height": 0.001}]},
+            r"^probe\[0\]\.height = 0\.001 m: is less than a spacing, so that no particle may be there",
+        ),
     ],
 )
 def test_instruments_outside_of_the_tank_are_refused(given, said):

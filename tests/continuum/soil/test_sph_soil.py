@@ -308,6 +308,26 @@ def test_outlines_hold_what_is_inside_and_know_their_top():
     assert slope.top(np.array([0.5, 1.5, 3.0])).tolist() == [1.0, 0.5, -np.inf]
 
 
+def test_a_bank_and_its_mirror_image_have_mirrored_particles():
+    """Slopes of 1 : 1 run through centres of the lattice: those of left sides were ground, those of right sides not,
+    and round-off took some of either."""
+    tank, spacing = 1.6, 0.025
+    bank = [(0.2, 0.0), (0.5, 0.3), (0.7, 0.3), (1.0, 0.0)]
+    at = (np.arange(round(tank / spacing)) + 0.5) * spacing
+    points = np.stack(np.meshgrid(at, at), -1).reshape(-1, 2)
+
+    def places(outline):
+        held = points[Body(outline=tuple(outline)).holds(points)]
+        return {(round(x / spacing - 0.5), round(y / spacing - 0.5)) for x, y in held.tolist()}
+
+    there = places(bank)
+    last = len(at) - 1
+    assert {(last - i, j) for i, j in places([(tank - x, y) for x, y in reversed(bank)])} == there
+    assert len(there) == sum(32 - 2 * k for k in range(12))  # centres from 0.2 + y to 1 - y, both ends counted
+    # the check that must fail: a tenth of a spacing to the right the left slope has lost its row
+    assert len(places([(x + 0.1 * spacing, y) for x, y in bank])) == len(there) - 12
+
+
 def pair(apart, pull):
     """Acceleration of two particles, ``apart`` of a spacing from each other, of soil under a tension ``pull``, Pa."""
     record = np.zeros((2, 16))
