@@ -27,13 +27,19 @@ class Outline(Section):
 
     def top(self, x: Floats) -> Floats:
         """Height (m) of its highest point above each ``x`` (n,) m; below all numbers where there is none."""
-        highest = np.full(x.shape, -np.inf)
+        return self.reach(x)[1]
+
+    def reach(self, x: Floats) -> tuple[Floats, Floats]:
+        """Heights (m) of its lowest and highest point over each ``x`` (n,) m; inf and -inf where there is none."""
+        lowest, highest = np.full(x.shape, np.inf), np.full(x.shape, -np.inf)
         for (ax, ay), (bx, by) in zip(self.outline, (*self.outline[1:], self.outline[0]), strict=True):
             left, right = min(ax, bx), max(ax, bx)
             over = (x >= left) & (x <= right)
-            y = np.full(x.shape, max(ay, by)) if ax == bx else ay + (x - ax) * ((by - ay) / (bx - ax))
-            highest = np.where(over, np.maximum(highest, y), highest)
-        return highest
+            along = 0.0 if ax == bx else (x - ax) * ((by - ay) / (bx - ax))
+            low, high = (min(ay, by), max(ay, by)) if ax == bx else (ay + along, ay + along)
+            lowest = np.where(over, np.minimum(lowest, low), lowest)
+            highest = np.where(over, np.maximum(highest, high), highest)
+        return lowest, highest
 
     def crosses(self) -> bool:
         """Whether two sides of the outline cross each other; sides that only touch do not."""
@@ -167,6 +173,15 @@ class SoilSection(Section):
         about = "file of porescale homogenise, whose numbers hold where the scene has none of its own"
         material = {"type": "string", "description": about}
         return {**schema, "properties": {**schema["properties"], "material": material}}
+
+    def surface_over(self, points: Floats, slack: float) -> Floats:
+        """Height (m) of the surface of the ground that stands over each of ``points`` (n, 2) m without a gap wider than
+        ``slack`` (m), (n,); that of the point where there is none."""
+        top, reaches = points[:, 1].copy(), [body.reach(points[:, 0]) for body in self.body]
+        for _ in reaches:  # in whatever order the pieces are given
+            for low, high in reaches:
+                top = np.where(low <= top + slack, np.maximum(top, high), top)
+        return top
 
     def permeability_at(self, points: Floats) -> Floats:
         """k (n,) m/s of the ground at ``points`` (n, 2) m: of the last body that holds a point and has its own."""

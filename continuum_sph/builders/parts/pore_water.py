@@ -73,7 +73,7 @@ def wet_top(scene: Scene, x: Floats) -> Floats | None:
     section = soil_section(scene)
     if not section.saturated and section.water_table is None:
         return None
-    top: Floats = np.max([body.top(x[:, 0]) for body in section.body], axis=0)
+    top = section.surface_over(x, 0.5 * scene.numerics.spacing)
     return top if section.water_table is None else np.minimum(top, section.water_table)
 
 
@@ -81,7 +81,7 @@ def buoyancy(scene: Scene, x: Floats) -> Floats:
     """What water takes off the upright stress (n,) Pa of soil at ``x`` (n, 2) m that is at rest: (1 - n) ρ g of the
     ground above that is wet."""
     section = soil_section(scene)
-    top = np.max([body.top(x[:, 0]) for body in section.body], axis=0)
+    top = section.surface_over(x, 0.5 * scene.numerics.spacing)
     above = np.column_stack((x[:, 0], np.minimum(top, scene.inner[1])))
     wet = wet_height(scene, x) - wet_height(scene, above)
     table = wet_top(scene, x)
@@ -109,7 +109,7 @@ def leave_to_water(scene: Scene, ground: SoilFlow, x: Floats, v: Floats, rho: Fl
     """
     section, state = soil_section(scene), water_state(scene)
     n = section.porosity
-    depth = np.max([body.top(x[:, 0]) for body in section.body], axis=0) - x[:, 1]
+    depth = section.surface_over(x, 0.5 * scene.numerics.spacing) - x[:, 1]
     inside = np.any([body.holds(x) for body in section.body], axis=0)
     borne = section.density * scene.gravity * depth - buoyancy(scene, x)
     gradient, soil = section.density / scene.water.density - (1.0 - n), slice(ground.soil.soil)

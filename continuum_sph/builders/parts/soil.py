@@ -355,20 +355,19 @@ def soil_particles(scene: Scene) -> tuple[Floats, Floats]:
     right, above = (min(scene.inner[a], max(corner[a] for corner in corners) + spacing) for a in (0, 1))
     lattice = square_lattice((0.0, 0.0), (right, above), spacing)  # a tank may be far wider than its ground
     inside, empty = np.zeros(len(lattice), np.bool_), []
-    top = np.full(len(lattice), -np.inf)
     free = ~sheet_pile(scene.pile, spacing).holds(lattice) if scene.pile else np.ones(len(lattice), np.bool_)
     for number, body in enumerate(section.body):
         own = body.holds(lattice) & free
         if not own.any():
             empty.append(unfilled(f"soil.body[{number}].outline", body))
         inside |= own
-        top = np.maximum(top, body.top(lattice[:, 0]))
     if empty:
         raise InputError(empty)
     x = lattice[inside]
     if section.stress != "geostatic":
         return x, np.zeros((len(x), 4))
-    return x, geostatic(top[inside] - x[:, 1], material_of(section), scene.gravity, section.rest)
+    depth = section.surface_over(x, 0.5 * spacing) - x[:, 1]
+    return x, geostatic(depth, material_of(section), scene.gravity, section.rest)
 
 
 def soil_flow(scene: Scene, *, hasty: bool = False) -> SoilFlow:
