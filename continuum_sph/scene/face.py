@@ -102,7 +102,7 @@ def face_faults(
     """What is wrong with the faces of a tank of a ``size`` (width, height), m, with particles of a ``spacing``, m."""
     found = []
     full = soil.body if soil is not None and soil.saturated else ()
-    if faces and not full:
+    if faces and not full and (soil is None or soil.suction is None):  # with suction faces are refused themselves
         found.append(Fault("face", "given", "needs ground whose pores are full",
                            repair="add [soil] and soil.saturated = true"))  # fmt: skip
     for k, it in enumerate(faces):

@@ -229,14 +229,15 @@ class Scene(SceneBase):
         faults = []
         for index, disc in enumerate(self.inclusion.disc):
             key, r = f"inclusion.disc[{index}]", disc.radius
+            inner = r - WHOLE * self.numerics.spacing  # a disc may touch the edges, to round-off
             held = any(
-                c.left <= disc.x - r and disc.x + r <= c.left + c.width
-                and c.bottom <= disc.y - r and disc.y + r <= c.bottom + c.height
+                c.left <= disc.x - inner and disc.x + inner <= c.left + c.width
+                and c.bottom <= disc.y - inner and disc.y + inner <= c.bottom + c.height
                 for c in self.water.column
             )  # fmt: skip
             if not held:
                 faults.append(Fault(key, (disc.x, disc.y), "does not lie within a column of water", "m"))
-            if r < 3.0 * self.numerics.spacing:
+            if r < (3.0 - WHOLE) * self.numerics.spacing:
                 faults.append(
                     Fault("numerics.spacing", self.numerics.spacing, f"leaves {key} fewer than 6 particles across", "m",
                           f"<= {r / 3.0:g}")

@@ -70,6 +70,12 @@ def test_soil_that_is_held_is_not_sent_for_water_that_suction_refuses():
     assert [fault.problem for fault in refused.value.faults] == ["cannot be with soil.suction"]
 
 
+def test_a_face_beside_suction_is_not_sent_for_pores_that_suction_refuses():
+    with pytest.raises(InputError) as refused:
+        scene(face=[{"side": "left", "head": 0.5}])
+    assert [fault.problem for fault in refused.value.faults] == ["cannot be with soil.suction"]
+
+
 @pytest.mark.parametrize("height", [0.0, 0.1])
 def test_a_water_table_of_the_soil_is_refused_beside_suction(height):
     """0 m passed, as it equals False, and did nothing."""

@@ -152,6 +152,24 @@ def test_discs_that_do_not_fit_are_refused(change, named):
         scene(**change)
 
 
+def test_a_disc_of_just_six_particles_that_touches_the_edges_is_taken():
+    """0.15 is less than 3 * 0.05, and 0.3 - 0.1 less than 0.2, by round-off alone."""
+    table = scene().model_dump(mode="json")
+    tank = {**table["tank"], "width": 1.0, "height": 1.0}
+    for spacing, left, x, radius in ((0.05, 0.0, 0.3, 0.15), (0.02, 0.2, 0.3, 0.1)):
+        column = {"left": left, "bottom": 0.0, "width": 0.6, "height": 0.6}
+        parts = {
+            "tank": tank,
+            "water": {**table["water"], "column": [column]},
+            "inclusion": {**table["inclusion"], "disc": [{"x": x, "y": 0.3, "radius": radius}]},
+            "numerics": {**table["numerics"], "spacing": spacing},
+        }
+        validate(scene_type(), {**table, **parts})
+        parts["inclusion"]["disc"][0]["radius"] *= 0.99 if radius == 0.15 else 1.01
+        with pytest.raises(InputError, match=r"fewer than 6|column of water"):  # the check that must fail
+            validate(scene_type(), {**table, **parts})
+
+
 def test_the_step_that_capillary_waves_allow_is_reported_and_used():
     thick = scene(surface_tension=1e6, density=1000.0)
     rows = {row.name: row.value for group in report(thick).groups.values() for row in group}
