@@ -164,10 +164,11 @@ class PoreInstruments(Part):
     def row(self) -> dict[str, float]:
         """Mass of the water in pores.
 
-        water in pores (kg/m) : mass of the water that lies in soil
+        water in pores (kg/m) : mass of the water that lies in soil, about which there are more than half of its grains
         """
         flow, n = self.flow, self.flow.layer.fluid
-        inside = (flow.porosity < 1.0) & (flow.layer.material[:n] == 0)
+        # Kernels smear the grains over two smoothing lengths: at the surface of ground half of them are about water.
+        inside = (flow.porosity < 0.5 * (1.0 + flow.resistance.porosity)) & (flow.layer.material[:n] == 0)
         return {"water in pores (kg/m)": float(flow.layer.mass[:n][inside].sum())}
 
     def tables(self) -> dict[str, dict[str, float]]:
