@@ -91,7 +91,8 @@ def test_fluid_that_nothing_drives_as_plain_python(monkeypatch):
     from porescale.lbm.collision import trt
 
     for module, name in ((trt, "symmetric_equilibrium"), (trt, "relax_by"), (trt, "magic_rate"),
-                         (shared, "cut"), (shared, "collide_cells"), (shared, "collide"), (shared, "half_force"), (shared, "shear_rate"),
+                         (shared, "cut"), (shared, "collide_cells"), (shared, "collide"), (shared, "half_force"),
+                         (shared, "shear_rate"),
                          (shared, "moments")):  # fmt: skip
         monkeypatch.setattr(module, name, getattr(module, name).py_func)
     f = dense.random_populations(1, 5)
