@@ -43,7 +43,9 @@ MOVING = ("position", "angle", "velocity", "spin", "arm", "force", "torque", "he
 class Body:
     """Mass kg/m, centroid (m) and moment of inertia about it (kg m^2/m) given by hand.
 
-    frame : the members are the corners of a frame of segments, and may be points;  area : m^2, None: of the union.
+    frame : the members are the corners of a frame of segments, and may be points;  area : m^2, None: of the union;
+    own : its centroid, m, where no force moves it: the point that is given as its centroid and about which it turns may
+    then lie anywhere, as the hinge of a door; its mass stays about its own, and its inertia is that about the hinge.
     """
 
     mass: float
@@ -51,6 +53,7 @@ class Body:
     inertia: float
     frame: bool = False
     area: float | None = None
+    own: tuple[float, float] | None = None
 
 
 class ClumpArrays(NamedTuple):
@@ -182,6 +185,10 @@ class Clumps:
         share = shares(weight, offset, size) if body.mass > 0.0 else None
         if share is not None and not frame:
             share = drawn_in(share, weight, offset, discs.radius[own], body.inertia / body.mass)
+        if share is None and body.own is not None:
+            away = np.array(body.own) - self.position[c]
+            share = shares(weight, offset - away, size)
+            self.inertia[c] += body.mass * float(away @ away)
         if share is None:
             raise InputError(Fault(f"{name}.centroid", body.centroid, "must lie amid the members", "m"))
         momentum = discs.mass[own] @ discs.velocity[own]
@@ -193,7 +200,7 @@ class Clumps:
         about = discs.mass[own] @ np.sum(offset**2, axis=1) + discs.inertia[own].sum()
         self.spin[c] = turning / about
         mass = body.mass * share
-        rest = body.inertia - float(mass @ np.sum(offset**2, axis=1))
+        rest = float(self.inertia[c]) - float(mass @ np.sum(offset**2, axis=1))
         if not (rest > 0.0 or (frame and body.inertia > 0.0)):
             raise InputError(Fault(f"{name}.inertia", body.inertia, "", "kg m^2/m", f"> {body.inertia - rest:.6g}"))
         discs.mass[own] = mass
