@@ -23,14 +23,16 @@ TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 
 
 def is_dry(scene: Mapping[str, Any]) -> bool:
-    """Whether a scene with soil, as on a run card, is without water."""
-    return not (scene["water"]["column"] or scene.get("reservoir") or scene.get("face"))
+    """Whether a scene with soil, as on a run card, is without particles of water: dry, or with suction."""
+    soil, water = scene["soil"], scene["water"]["column"] or scene.get("reservoir") or scene.get("face")
+    return bool(soil.get("suction")) or not (water or soil.get("saturated") or soil.get("water_table"))
 
 
 def look_of_scene(
     scene: Mapping[str, Any], name: str, surface: Callable[[Snapshot], Sequence[Line]] | None = None
 ) -> Look:
     """The look of a scene, as on a run card.  surface : of the water in soil, where it is known."""
+    from continuum_sph.scene.look import MARGIN
     from continuum_sph.scene.pile import SheetPileSection  # pydantic takes longer to import than a page to be asked for
     from porescale.common.pictures.choose import with_section
     from porescale.common.pictures.look import Look
@@ -43,7 +45,7 @@ def look_of_scene(
     if pile := scene.get("pile"):
         at = SheetPileSection.model_validate(pile).column(scene["numerics"]["spacing"])
         lines.append(((at, pile["tip"]), (at, height)))
-    margin = 0.02 * width
+    margin = MARGIN * width
     more: dict[str, Any] = {"colour": "velocity"}
     if scene["soil"] and scene["soil"].get("suction"):
         more = {"colour": "saturation"}

@@ -10,6 +10,7 @@ from continuum_sph.scene.bounds import MOST, WEAKEST, WHOLE, spacings
 from continuum_sph.scene.face import FaceSection, face_faults
 from continuum_sph.scene.inclusion import InclusionSection
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
+from continuum_sph.scene.look import look_faults
 from continuum_sph.scene.material_file import with_material
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.output import OutputSection, TimeSection
@@ -155,7 +156,7 @@ class Scene(SceneBase):
                     Fault("numerics.spacing", spacing, f"leaves {key} fewer than 4 particles across", "m",
                           f"<= {finest:g}")
                 )  # fmt: skip
-        faults += self._overlapping() + self._unseen()
+        faults += self._overlapping() + self._unseen() + look_faults(self)
         columns = self.water.column
         alone = len(columns) == 1 and columns[0].left == columns[0].bottom == 0.0
         if self.water.pressure == "released" and columns and not alone:
@@ -237,7 +238,7 @@ class Scene(SceneBase):
             )  # fmt: skip
             if not held:
                 faults.append(Fault(key, (disc.x, disc.y), "does not lie within a column of water", "m"))
-            if r < (3.0 - WHOLE) * self.numerics.spacing:
+            if r < (1.0 - WHOLE) * 3.0 * self.numerics.spacing:
                 faults.append(
                     Fault("numerics.spacing", self.numerics.spacing, f"leaves {key} fewer than 6 particles across", "m",
                           f"<= {r / 3.0:g}")

@@ -99,10 +99,24 @@ class PoreFlow(Flow):
         """Overwrite ``excess`` with that of now."""
         layer, soil, law, rows = self.layer, self.skeleton, self.law, self.overlap.rows
         pile = (self.pairs.at, self.pairs.bottom, self.pairs.half) if isinstance(self.pairs, CutPairList) else None
-        room = room_before(Edges(self.lower, self.upper, pile), soil.x, law.spacing, law.smoothing.length)
+        room = room_before(Edges(*self.edges_at(soil.x), pile), soil.x, law.spacing, law.smoothing.length)
         fill_about_soil(layer.fluid, *rows, layer.record, layer.material, room, self.full)
         excess_about_water(layer.fluid, *rows, soil.burden, layer.material, self.pores, self.full, self.excess)
         self.corrected = bool(self.excess.any())
+
+    def edges_at(self, x: Floats) -> tuple[Floats, Floats]:
+        """Lower and upper edges of the room of the water beside places ``x`` (s, 2), m: of the tank, (2,); (2, s) where
+        it has faces, which go along with the water."""
+        if not self.faces:
+            return self.lower, self.upper
+        lower, upper = (np.repeat(edge[:, None], len(x), axis=1) for edge in (self.lower, self.upper))
+        for face in self.faces:
+            way = face.passed(x, self.layer.x, self.home).T
+            if max(face.normal) > 0.0:
+                lower += way
+            else:
+                upper += way
+        return lower, upper
 
     def sum_pairs(self, half: float) -> None:
         """Sum over pairs as `Flow.sum_pairs` does, for the mixture: gradients are corrected among grains alone."""

@@ -63,6 +63,17 @@ class PressureFace:
             push_of(self.columns, shift, near, layer.x, layer.record, matrix, nx, ny, push)
         self.slope = (ahead - back) / (2.0 * TRIAL * spacing)
 
+    def passed(self, at: Floats, x: Floats, home: Floats) -> Floats:
+        """How far the first particles behind the face have gone across it, (s, 2) m, beside places ``at`` (s, 2) m; 0
+        beyond its ends.  x, home (n, 2) m: of all particles, and where they stood at the start."""
+        first, axis = self.columns[:, 0], int(self.normal[0] != 0.0)  # along the face
+        order = np.argsort(home[first, axis])
+        first = first[order]
+        way = np.zeros_like(at)
+        gone = x[first, 1 - axis] - home[first, 1 - axis]
+        way[:, 1 - axis] = np.interp(at[:, axis], home[first, axis], gone, left=0.0, right=0.0)
+        return way
+
     def hydrostatic(self, x: Floats, level: float, weight: float, offset: float = 0.0) -> None:
         """Set the pressure of water that stands to ``level`` (m) over it; none above.
 

@@ -17,7 +17,7 @@ from porescale.builders.checks.packing import beside_the_bed, check_compressed, 
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.builders.checks.prescribed import check_controls, check_motions
 from porescale.builders.checks.regime import check_regime, expected_speed, too_soft, travel_step
-from porescale.builders.initial.clumps import lightest
+from porescale.builders.initial.clumps import lightest, undisplaced_clumps
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, longest_of, placed_frames, sizes_of
 from porescale.builders.initial.packing import radii_of
@@ -93,6 +93,7 @@ def derive(scene: Scene) -> Derived:
         warnings += filter(None, [energy_of_mass(scene, every, *smallest)])
         if scene.clump:
             smallest = min(smallest[0], lightest(scene.clump, plan, every)), smallest[1]
+            faults += undisplaced_clumps(scene.clump, scene.grains.hydraulic_radius_ratio or 1.0) if scales else []
         if scene.rock and not faults:
             frames = [*frames, *rock_frames(scene, law)]
         if frames:

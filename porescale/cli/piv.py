@@ -111,6 +111,7 @@ def render(
     from porescale.piv import given
     from porescale.piv.images.camera import GREYS, shot_of
     from porescale.piv.images.filmed import write_frames
+    from porescale.piv.images.rendered import measured_with
     from porescale.piv.images.synth import Camera
 
     folder = out or run / "piv"
@@ -129,9 +130,7 @@ def render(
     count = write_frames(opened, shot, folder)
     rows, columns = shot.camera.size
     print(f"{count} frames of {columns} x {rows} px, {shot.scale:.4g} m a pixel, {shot.interval:.4g} s apart")
-    frames, masks = (quote(f"{folder}/{name}") for name in ("frames", "masks"))
-    options = f"--mask {masks} --scale {shot.scale:.6g} --interval {shot.interval:.6g} --time {shot.start:g}"
-    print(f"measure with: porescale piv measure {frames} {options}")
+    print(f"measure with: porescale piv measure {measured_with(folder)}")
     return 0
 
 

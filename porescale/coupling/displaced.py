@@ -12,9 +12,9 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
-from porescale.dem.bodies.clumps import LEAST, shares
+from porescale.dem.bodies.clumps import LEAST, drawn_in, shares
 from porescale.dem.bodies.rigid import clumps_of
-from porescale.dem.bodies.union import outline
+from porescale.dem.bodies.union import Outline, outline
 from porescale.dem.grains import Grains
 
 
@@ -25,6 +25,38 @@ class Displaced(NamedTuple):
     mass: Floats
     inertia: Floats
     thinness: Floats
+
+
+class Inside(NamedTuple):
+    """The union of the discs of a clump, and how they share it.
+
+    share (k,): of its area, with the centre of the union;  rest : second moment (m^4) that this leaves the discs to
+    turn with, more than none, shared by ``weight`` (k,) m² times radius.
+    """
+
+    union: Outline
+    share: Floats
+    weight: Floats
+    rest: float
+
+
+def inside_of(at: Floats, radius: Floats) -> Inside | None:
+    """What discs at ``at`` (k, 2) m with ``radius`` (k,) m cover; None where no shares of it can be made."""
+    union = outline(at, radius)
+    weight = radius * np.maximum(union.exposed, LEAST * radius)
+    from_centre = at - union.centroid
+    share = shares(weight, from_centre, float(radius.max()))
+    if share is None:
+        return None
+    share = drawn_in(share, weight, from_centre, radius, union.second_moment / union.area)
+    rest = union.second_moment - union.area * float(share @ np.sum(from_centre**2, axis=1))
+    return Inside(union, share, weight, rest) if rest > 0.0 else None
+
+
+def undisplaced(number: int) -> Fault:
+    """The fault of a clump whose discs, with their hydraulic radii, have no shares of the fluid in it."""
+    repair = "make it of other discs, or raise grains.hydraulic_radius_ratio"
+    return Fault(f"clump[{number}]", None, "cannot displace fluid", repair=repair)
 
 
 def displaced(grains: Grains, radius: Floats, density: float) -> Displaced:
@@ -46,18 +78,12 @@ def displaced(grains: Grains, radius: Floats, density: float) -> Displaced:
             mass[own] = lightness * grains.discs.mass[own]
             inertia[own] = lightness * grains.discs.inertia[own]
             continue
-        at = clumps.offset[clumps.start[c] : clumps.start[c + 1]]
-        union = outline(at, radius[own])
-        weight = radius[own] * np.maximum(union.exposed, LEAST * radius[own])
-        from_centre = at - union.centroid
-        share = shares(weight, from_centre, float(radius[own].max()))
-        rest = 0.0
-        if share is not None:
-            rest = union.second_moment - union.area * float(share @ np.sum(from_centre**2, axis=1))
-        if share is None or not rest > 0.0:
-            raise InputError(Fault(f"clump[{c}]", None, "cannot displace fluid", repair="make it of other discs"))
-        mass[own] = density * union.area * share
-        inertia[own] = density * rest * weight * radius[own] / float(weight @ radius[own])
+        found = inside_of(clumps.offset[clumps.start[c] : clumps.start[c + 1]], radius[own])
+        if found is None:
+            raise InputError(undisplaced(c))
+        union, weight = found.union, found.weight
+        mass[own] = density * union.area * found.share
+        inertia[own] = density * found.rest * weight * radius[own] / float(weight @ radius[own])
         thinness[own] = float(union.exposed.sum()) / union.area
     return Displaced(mass, inertia, thinness)
 

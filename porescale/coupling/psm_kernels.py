@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import inline, parallel_kernel, prange, thread, unchecked_view
+from porescale.common.compiled.jit import disjoint, inline, parallel_kernel, prange, thread, unchecked_view
 from porescale.coupling.coverage.rows import BLOCK, rasterize_row
 from porescale.coupling.load import accumulate_load_row
 from porescale.coupling.solid.law import (
@@ -99,15 +99,16 @@ def collide_saturated_cell(f, body, weights, laws):
     return g, (share * ta, share * tx, share * ty), slip
 
 
-@inline
-def weights_row(s, sx, sy, weights, weighting, solid):
+@disjoint
+def weights_row(sums, weights, weighting, solid):
     """What saturated cells need that follows from the bodies alone.
 
-    s, sx, sy (cells,) as in collide_saturated_row: sx, sy become the mean solid velocity.  Overwrites four rows of
-    weights:  1 over the sum of the solid fractions, or 1 where there is none to speak of, whose square is 0 (1 over it
-    may be infinite);  the weight b;  the two ``rates``.  A loop of its own, since in one with the collision divisions
-    would wait for each other.
+    sums: s, sx, sy (cells,) as in collide_saturated_row: sx, sy become the mean solid velocity.  Overwrites four rows
+    of weights:  1 over the sum of the solid fractions, or 1 where there is none to speak of, whose square is 0 (1 over
+    it may be infinite);  the weight b;  the two ``rates``.  A loop of its own, since in one with the collision
+    divisions would wait for each other.
     """
+    s, sx, sy = sums
     inverse, b, first_rate, second_rate = weights
     for x in range(s.shape[0]):
         share, b[x], (first_rate[x], second_rate[x]) = weights_of_cell(s[x], weighting, solid)
@@ -116,29 +117,12 @@ def weights_row(s, sx, sy, weights, weighting, solid):
         sy[x] *= share
 
 
-@inline
-def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
-    """Collide cells ``first`` to ``last`` - 1 of a row in which grains lie.
-
-    planes: nine slots (nx,), as in collide_row;  laws: of weight, solid and fluid operator.  s, sx, sy (nx,): sum of
-    the solid fractions e and of e times solid velocity; overwritten with what loads are made of, the three numbers of
-    ``momentum_to_solid`` over sum e.  st (nx,): sum of e times theta where rims are soft, overwritten with |u - v|; not
-    touched elsewhere.  weights (4 or more, as many cells): scratch.
-    """
-    weighting, solid, law = laws
-    # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
-    n = last - first
-    a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut(planes, first, n)
-    s, sx, sy, st = (
-        unchecked_view(s, first, n),
-        unchecked_view(sx, first, n),
-        unchecked_view(sy, first, n),
-        unchecked_view(st, first, n),
-    )
-    inverse, b = unchecked_view(weights[0], 0, n), unchecked_view(weights[1], 0, n)
-    first_rate, second_rate = unchecked_view(weights[2], 0, n), unchecked_view(weights[3], 0, n)
-    weights_row(s, sx, sy, (inverse, b, first_rate, second_rate), weighting, solid)
-    fluids = part_law(first, last, law)
+@disjoint
+def collide_saturated_cells(planes, sums, st, weights, weighting, solid, fluids):
+    """Collide all cells of nine slots (n,);  arguments as in collide_saturated_row, weights: of ``weights_row``."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = planes
+    s, sx, sy = sums
+    inverse, b, first_rate, second_rate = weights
     soft = is_soft(solid)
     for x in range(s.shape[0]):
         f = (a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
@@ -150,6 +134,32 @@ def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
         if soft:
             st[x] = slip
         s[x], sx[x], sy[x] = gained
+
+
+@inline
+def collide_saturated_row(planes, sums, st, weights, first, last, laws):
+    """Collide cells ``first`` to ``last`` - 1 of a row in which grains lie.
+
+    planes: nine slots (nx,), as in collide_row;  laws: of weight, solid and fluid operator.  sums: s, sx, sy (nx,), sum
+    of the solid fractions e and of e times solid velocity; overwritten with what loads are made of, the three numbers
+    of ``momentum_to_solid`` over sum e.  st (nx,): sum of e times theta where rims are soft, overwritten with |u - v|;
+    not touched elsewhere.  weights (4 or more, as many cells): scratch.
+    """
+    weighting, solid, law = laws
+    # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
+    n = last - first
+    s, sx, sy = sums
+    here = unchecked_view(s, first, n), unchecked_view(sx, first, n), unchecked_view(sy, first, n)
+    found = (
+        unchecked_view(weights[0], 0, n),
+        unchecked_view(weights[1], 0, n),
+        unchecked_view(weights[2], 0, n),
+        unchecked_view(weights[3], 0, n),
+    )
+    weights_row(here, found, weighting, solid)
+    fluids = part_law(first, last, law)
+    softness = unchecked_view(st, first, n)
+    collide_saturated_cells(cut(planes, first, n), here, softness, found, weighting, solid, fluids)
 
 
 @inline
@@ -192,7 +202,7 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, row_load, scratc
         softness = unchecked_view(scratch[scratch.shape[0] - 1], BLOCK, n)
         for first in range(left, right, AT_ONCE):
             last = min(first + AT_ONCE, right)
-            collide_saturated_row(planes, s, sx, sy, softness, weights, first, last, laws)
+            collide_saturated_row(planes, (s, sx, sy), softness, weights, first, last, laws)
         for k in range(scratch.shape[0]):
             scratch[k, :BLOCK] = 0
             scratch[k, BLOCK + n :] = 0

@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.reference.folders import ROOT
 
 PACKAGES = ("porescale", "continuum_sph")
-KERNELS = {"kernel", "parallel_kernel", "inline", "law_function"}
+KERNELS = {"kernel", "parallel_kernel", "inline", "disjoint", "law_function"}
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 

@@ -215,7 +215,7 @@ def test_a_rim_that_hardly_touches_a_cell_leaves_its_numbers_finite(least):
     sx *= np.float32(0.1)
     inverse, b, even, kept = np.zeros((4, 2), np.float32)
     law = choose_weight("wall", 0.501, np.float32, soft=True)
-    weights_row.py_func(s, sx, sy, (inverse, b, even, kept), law, solid)
+    weights_row.py_func((s, sx, sy), (inverse, b, even, kept), law, solid)
     for found in (inverse, sx, sy, b, even, kept):
         assert np.isfinite(found).all()
     assert (np.abs(sx) <= 0.1 * (1 + 4 * np.finfo(np.float32).eps)).all()

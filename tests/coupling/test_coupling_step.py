@@ -150,7 +150,7 @@ def test_a_row_of_saturated_cells_is_the_same_uncompiled(operator, weighting):
     made = []
     for run in (solid_collision.collide_saturated_row, solid_collision.collide_saturated_row.py_func):
         copies = [row.copy() for row in rows], s.copy(), sx.copy(), sy.copy(), np.zeros(5)
-        run(tuple(copies[0]), *copies[1:], np.zeros((4, 5)), 0, 5, laws)
+        run(tuple(copies[0]), tuple(copies[1:4]), copies[4], np.zeros((4, 5)), 0, 5, laws)
         made.append(np.array([*copies[0], *copies[1:]]))
     # the same operations but for fused multiply-adds: 30 roundings of numbers up to 1.4
     np.testing.assert_allclose(*made, rtol=0, atol=30 * 1.4 * EPS)
@@ -164,7 +164,7 @@ def test_an_empty_saturated_row_is_a_plain_one(operator, weighting):
     fluid = Fluid(5, 1, 0.7, force=(1e-4, 2e-4))
     rows = 0.01 * random.uniform(-1, 1, (9, 5))
     wet, dry, none = [row.copy() for row in rows], [row.copy() for row in rows], np.zeros(5)
-    solid = none.copy(), none.copy(), none.copy(), none.copy()
+    solid = (none.copy(), none.copy(), none.copy()), none.copy()
     laws = laws_of(operator, weighting, fluid)
     solid_collision.collide_saturated_row(tuple(wet), *solid, np.zeros((4, 5)), 0, 5, laws)
     collide_row(tuple(dry), 0, 5, fluid.law)

@@ -8,6 +8,7 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces import pairs as forces
 from porescale.dem.forces import walls
+from porescale.dem.forces.batch import pair_forces, scratch
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
@@ -93,7 +94,7 @@ def test_kernels_do_the_same_as_plain_python():
         call = (lambda kernel: kernel.py_func) if plain else (lambda kernel: kernel)
         d.external_force[:], d.external_torque[:] = 1.0, 1.0
         call(forces.start_forces)(d)
-        call(forces.pair_forces)(d, pairs, law, 1e-5, Still(0.0, 0.0))
+        call(pair_forces)(d, pairs, law, 1e-5, Still(0.0, 0.0), *(it[0] for it in scratch(1)))
         near = np.ones((len(grains.walls), walls.runs_of(len(d.radius))), np.uint8)
         call(walls.add_near_walls)(d, *grains.surface("wall"), 0, near, 0, len(d.radius), law, 1e-5)
         call(walls.add_plate_forces)(d, *grains.surface("plate"), 0, 0, len(d.radius), law, 1e-5)

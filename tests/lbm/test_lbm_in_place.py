@@ -231,7 +231,7 @@ def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
         compiled.advance()
     for module, name in (
         (stream, "collide_row"), (stream, "even_slots"), (stream, "odd_slots"), (stream, "slots"),
-        (law, "cut"), (law, "moments"), (moments, "moments"),
+        (law, "collide_cells"), (law, "cut"), (law, "moments"), (moments, "moments"),
         (law, "shear_rate"), (law, "collide"), (law, "half_force"), (trt, "relax_halves"),
         (trt, "relax_by"), (trt, "symmetric_equilibrium"), (trt, "symmetric_gain"), (trt, "magic_rate"),
         (rim, "pass_on"), (rim, "pass_one"),

@@ -91,11 +91,12 @@ def test_fluid_that_nothing_drives_as_plain_python(monkeypatch):
     from porescale.lbm.collision import trt
 
     for module, name in ((trt, "symmetric_equilibrium"), (trt, "relax_by"), (trt, "magic_rate"),
-                         (shared, "cut"), (shared, "collide"), (shared, "half_force"), (shared, "shear_rate"),
+                         (shared, "cut"), (shared, "collide_cells"), (shared, "collide"), (shared, "half_force"),
+                         (shared, "shear_rate"),
                          (shared, "moments")):  # fmt: skip
         monkeypatch.setattr(module, name, getattr(module, name).py_func)
     f = dense.random_populations(1, 5)
-    rows = list((f[ORDER] - WEIGHTS)[:, 0])
+    rows = tuple((f[ORDER] - WEIGHTS)[:, 0])
     shared.collide_row.py_func(rows, 0, 5, trt.TrtWithoutForce(1 / 0.7, 0.0, 0.0, 0.2))
     out = np.empty(f.shape)
     out[ORDER] = np.array(rows)[OPPOSITE][:, None] + WEIGHTS
@@ -155,6 +156,7 @@ def test_an_operator_of_plain_python_is_the_compiled_one(operator, smagorinsky, 
         (stream, "collide_row"),
         (stream, "even_slots"),
         (stream, "slots"),
+        (law, "collide_cells"),
         (law, "cut"),
         (law, "moments"),
         (law, "shear_rate"),

@@ -160,6 +160,19 @@ def test_the_command_films_and_says_how_to_measure(run, tmp_path, monkeypatch, c
     frames, masks = (str(tmp_path / "f g" / part) for part in ("frames", "masks"))
     assert words[:6] == ["porescale", "piv", "measure", frames, "--mask", masks]
     assert len(list((tmp_path / "f g" / "frames").glob("*.png"))) == 3
+    assert main(commands(), ["piv", "measure", str(tmp_path / "f g"), "--out", str(tmp_path / "out")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()  # its folder has none itself: the same words lead to them
+    assert line.endswith(f"0 pictures there; those of `piv render` are measured with {shlex.join(words[3:])}")
+    assert main(commands(), [*words[1:], "--out", str(tmp_path / "out")]) == 0
+    capsys.readouterr()
+    for spoil in ("no shot", "no frames"):  # the check that fails: a folder without pictures that is none of them
+        other = tmp_path / spoil
+        (other / "frames").mkdir(parents=True)
+        (other / "shooting.json").write_text("{}" if spoil == "no shot" else '{"scale": 1, "interval": 1, "start": 0}')
+        if spoil == "no frames":
+            (other / "frames").rmdir()
+        assert main(commands(), ["piv", "measure", str(other), "--out", str(tmp_path / "out")]) == 2
+        assert capsys.readouterr().err.strip().endswith("0 pictures there; give two or more")
     for wrong in (["--start", "0.3"], ["--scale", "1 s"], ["--interval", "-1"]):
         assert main(commands(), [*given, *wrong]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1

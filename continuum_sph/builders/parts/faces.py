@@ -71,8 +71,8 @@ class FacePart(Part):
             if way > FARTHEST * self.spacing:
                 raise Unstable(
                     name, "distance that water has moved through the face", way, "m", self.flow.step, self.flow.time,
-                    f"no more than {FARTHEST:g} spacings of it are there; what is recorded so far holds: end sooner, "
-                    "or use a reservoir",
+                    f"no more than {FARTHEST:g} spacings of it are there, and flow is 1 % off after half of them, and "
+                    "up to 15 % in the end: end sooner, or use a reservoir",
                 )  # fmt: skip
 
     def row(self) -> dict[str, float]:

@@ -24,7 +24,7 @@ from porescale.builders.checks.limits import (
     thin,
 )
 from porescale.builders.checks.own_laws import inflow_peak
-from porescale.builders.checks.sound import check_gate, check_inflows, check_pistons, check_sound
+from porescale.builders.checks.sound import check_gate, check_inflows, check_pistons, check_sound, check_start
 from porescale.builders.initial.clumps import least_density
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
 from porescale.builders.initial.fluid_options import collision_options, weight_of
@@ -248,6 +248,7 @@ def check_regime(
     check_gate(scene, scales, warnings)
     check_pistons(scene, scales, warnings)
     check_inflows(scene, scales, warnings)
+    check_start(scene, scales, warnings)
     check_flows(scene, scales, sizes is not None, faults, warnings)
     if scene.ring and scene.ring.diameter < RING_CELLS * scales.spacing:
         repair = f"a spacing of {scene.ring.diameter / RING_CELLS:.2g} m gives it so many"

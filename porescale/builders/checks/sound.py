@@ -130,6 +130,25 @@ def check_inflows(scene: Scene, scales: Scales, warnings: list[str]) -> None:
             )
 
 
+def check_start(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Warn of fluid that flows towards a closed side from the start, away from another: it is stopped by sound.
+
+    From each of both sides a front runs at c and stops it: p = rho c u behind one, -rho c u behind the other.  The
+    fronts meet, the fluid flows back, and after 2 L/c it is as at the start (the wave equation, by d'Alembert)."""
+    sides, velocity = scene.domain.sides, scene.fluid.velocity if scene.fluid else (0.0, 0.0)
+    for axis, ends in enumerate((("left", "right"), ("bottom", "top"))):
+        if not velocity[axis] or not all(sides[name].boundary.closed for name in ends):
+            continue
+        rate, damping = modes(scene, scales, axis, passes=False)
+        press = scales.density * scales.sound_speed * abs(velocity[axis])
+        warnings.append(
+            f"fluid.velocity = {velocity[axis]:g} m/s towards the {ends[velocity[axis] > 0.0]} side, which is closed,"
+            f" rings as sound: pressures swing by {press:.3g} Pa (rho c u) with a period of {2 * math.pi / rate:.3g} s"
+            f" (2 L/c), by a tenth of it after {math.log(1 / SWING) / damping:.2g} s; leave it out, or let fluid"
+            " pass there"
+        )
+
+
 def modes(scene: Scene, scales: Scales, axis: int, *, passes: bool) -> tuple[float, float]:
     """The slowest oscillation of sound along an axis, rad/s, and how fast it is damped, 1/s.
 

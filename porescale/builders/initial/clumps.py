@@ -8,6 +8,8 @@ import numpy as np
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.frames import Placed, bind_frames
 from porescale.builders.initial.placed import members
+from porescale.common.core.errors import Fault
+from porescale.coupling.displaced import inside_of, undisplaced
 from porescale.dem.bodies.clumps import Body
 from porescale.dem.bodies.union import outline
 from porescale.dem.contact.law import ContactLaw
@@ -41,6 +43,12 @@ def lightest(clumps: Iterable[Clump], plan: MaterialPlan, every: list[ContactLaw
     ends = np.cumsum([0, *(len(it.discs) for it in first)])
     grains.steering.bind(*_bodies(first, [np.arange(*ends[k : k + 2]) for k in range(len(first))], plan))
     return grains.steering.lightest(every)
+
+
+def undisplaced_clumps(clumps: Iterable[Clump], ratio: float) -> list[Fault]:
+    """Faults of clumps whose discs, with ``ratio`` of their radii, have no shares of the fluid that they displace."""
+    bodies = [np.array(it.discs) for it in clumps]
+    return [undisplaced(k) for k, it in enumerate(bodies) if inside_of(it[:, :2], ratio * it[:, 2]) is None]
 
 
 def replace_at(clump: Clump) -> Clump:

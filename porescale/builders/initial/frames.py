@@ -17,7 +17,7 @@ from porescale.builders.initial.time_functions import control_of
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.schema.names import names_of
-from porescale.dem.bodies.clumps import Body
+from porescale.dem.bodies.clumps import Body, shares
 from porescale.dem.bodies.frames import Frame, add_frames, chain, corner_discs, framed, from_ends, polygon, skin_of
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
@@ -136,7 +136,7 @@ def _lines(section: SegmentBody | Container, at: Any, angle: float, density: flo
 
 
 def _container(plan: MaterialPlan, section: Container, more: dict[str, Any]) -> Frame:
-    """The frame of a container, with its pivot for a centroid."""
+    """The frame of a container, with its pivot for a centroid; anywhere where no force moves it."""
     points = np.array(section.chain or section.ends).reshape(-1, 2)
     width = max(2.0 * section.thickness, ROD * float(np.ptp(points, axis=0).max()))
     density = plan.density(section.material or plan.of_walls)
@@ -144,7 +144,12 @@ def _container(plan: MaterialPlan, section: Container, more: dict[str, Any]) -> 
     if section.pivot is None:
         return frame
     own = frame.mass_properties()
-    return replace(frame, body=Body(own.mass, section.pivot, own.inertia, True, own.area))
+    driven, arm = all(isinstance(it, Moved) for it in _prescribed(section)), np.array(frame.corners) - section.pivot
+    if not driven and shares(np.ones(len(arm)), arm, float(np.abs(arm).max())) is None:
+        problem, repair = "must lie amid the points of its segments, as a force moves it", "take a point between them"
+        raise InputError(Fault("frame.pivot", None, problem, "m", repair=repair))
+    centroid = own.centroid if driven else None
+    return replace(frame, body=Body(own.mass, section.pivot, own.inertia, True, own.area, centroid))
 
 
 def _turned(points: Any, at: Any, angle: float, size: float = 1.0) -> Floats:
@@ -189,9 +194,6 @@ def _of_clump(fault: Fault, placed: Sequence[Placed], before: int) -> Fault:
     if not number.isdigit() or int(number) < before:
         return _of_section(fault, next(it.key for it in placed if it.frame.thickness == 0.0 or it is placed[-1]))
     it = placed[int(number) - before]
-    if rest == "centroid":
-        problem = "must lie amid the points of its segments"
-        return Fault(f"{it.key}.pivot", None, problem, "m", repair="take a point between them")
     return replace(fault, key=f"{it.key}.{rest}")
 
 

@@ -95,6 +95,13 @@ def check_scene_resume(program: Program, folder: Path, card: dict[str, Any]) -> 
     check_resume(folder, card, today=_completing(program.scene(), card, program.formerly))
 
 
+def check_same_scene(program: Program, folder: Path, card: dict[str, Any]) -> None:
+    """InputError naming every key of a scene in which the run in ``folder`` differs from that of ``card``."""
+    from porescale.common.record.record import check_changes
+
+    check_changes(folder, card, _completing(program.scene(), card, program.formerly))
+
+
 def _completing(
     scene_type: type[Section], card: Mapping[str, Any], formerly: Mapping[str, Any] = MappingProxyType({})
 ) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:

@@ -26,6 +26,7 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
+from numba.core.cpu import CPUTargetOptions
 from numba.core.errors import NumbaWarning
 from numba.extending import intrinsic, overload
 
@@ -38,6 +39,9 @@ from porescale.common.compiled.turns import TURNS
 # A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
 # and gives up at 8 by default.
 llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
+
+# `disjoint` of jit.py: numba has this flag for what it compiles, and gives it no name among the options.
+CPUTargetOptions.noalias = CPUTargetOptions.Mapping("noalias")
 
 # Where the folder cannot be written numba would cache beside the sources, or give up: compile anew then.
 _KEPT = writable(cache_folder())

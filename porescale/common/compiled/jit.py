@@ -137,6 +137,15 @@ def inline(function: F) -> F:
     return _decorator(forceinline=True)(function)
 
 
+def disjoint(function: F) -> F:
+    """As ``inline``, for a loop over arrays of which no two share memory; not checked.
+
+    A compiler that is not told so compares every pair of them before each loop that it takes several entries at a time:
+    a hundred comparisons where a row of grains is collided, as long as the row itself takes where it is short.
+    """
+    return _decorator(forceinline=True, noalias=True)(function)
+
+
 def law_function(signature: F) -> Any:
     """Make an inline kernel whose body depends on the type of its last argument, the law: a NamedTuple of numbers.
 

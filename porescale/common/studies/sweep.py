@@ -9,7 +9,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from porescale.common.api.folders import TYPED, Words
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.read_card import NAME as CARD
 
 if TYPE_CHECKING:
     from porescale.common.api.program import Program
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
 
 TABLES = 512
 """Tables of run folders that are kept in memory."""
+SAID = 3
+"""Runs of another sweep that are named, at most."""
+ELSEWHERE = "name another folder, or remove what is there"
+"""What helps where runs are in the way of a sweep."""
 SELDOM = 5.0
 """Files of a sweep are written again after so many times what writing them took."""
 
@@ -85,6 +91,34 @@ def check_points(
     if faults:
         raise InputError(list(faults.values()))
     return find(scene), read.name
+
+
+def require_alone(campaign: Campaign, points: Sequence[Point], words: Words = TYPED) -> None:
+    """InputError where the folder of a sweep holds runs that are none of its ``points``."""
+    names = {point.name for point in points}
+    others = sorted(it.parent.name for it in campaign.folder.glob(f"*/{CARD}") if it.parent.name not in names)
+    if others:
+        more = f" and {len(others) - SAID} more" if len(others) > SAID else ""
+        problem = f"holds runs of another sweep: {' '.join(others[:SAID])}{more}"
+        raise InputError(Fault(words.out, str(campaign.folder), problem, repair=ELSEWHERE))
+
+
+def require_same(program: Program, scene: Path, campaign: Campaign, points: Sequence[Point]) -> None:
+    """InputError where a point has a run of another scene in its folder, as that of a scene's file before a change."""
+    from porescale.common.api.run_scene import card_of, check_same_scene
+    from porescale.common.record.check_state import CHECKPOINT
+    from porescale.common.schema.sections import load
+
+    for point in points:
+        place = campaign.place(point)
+        if not ((place / CARD).exists() and (place / CHECKPOINT).exists()):
+            continue
+        overrides = (*campaign.settings, *point.settings)
+        read = load(scene, program.scene(), quality=point.quality or campaign.quality, overrides=overrides)
+        try:
+            check_same_scene(program, place, card_of(program, read))
+        except InputError as error:
+            raise InputError([replace(it, file=str(place), repair=ELSEWHERE) for it in error.faults]) from None
 
 
 def expected(scene: Path) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Forces between discs: one pass over a half list of pairs.
+"""The contact of two round bodies: how they approach each other, and what each gets of it.
 
 With n = (x_j - x_i)/d and t = (-n_y, n_x) the slip v_t = (v_i - v_j).t + w_i a_i + w_j a_j does not change
 when i and j swap, so the history of a contact is one number.  The lever arms a_i = (d^2 + r_i^2 -
@@ -22,7 +22,7 @@ from porescale.dem.contact.law import (
     row_numbers,
     store_history,
 )
-from porescale.dem.motion.periodic_cell import add_load, affine_velocity, image
+from porescale.dem.motion.periodic_cell import affine_velocity
 
 
 class Approach(NamedTuple):
@@ -71,20 +71,27 @@ def relative_velocity(i, j, dx, dy, velocity, cell):
 
 
 @inline
-def contact_force(i, k, overlap, way, mass, p, history, budget, law, dt):
-    """A contact of round bodies: force on the first along x, y (N/m), torques on both (N m/m).
+def answer_contact(i, overlap, way, mass, p, springs, budget, law, dt):
+    """A contact of round bodies: force on the first along x, y (N/m), torques on both (N m/m); then its springs (m).
 
-    overlap (m) > 0;  way: their Approach;  mass (kg/m) reduced;  p (COLUMNS,) row of the law.  Overwrites row k of
-    ``history``; the energy budget, if any, has the losses at disc i.
+    overlap (m) > 0;  way: their Approach;  mass (kg/m) reduced;  p (COLUMNS,) row of the law;  springs m before.  The
+    energy budget, if any, has the losses at disc i.
     """
     seen = Relative(overlap, way.closing, way.slip, way.rolling, way.reduced)
-    spring, roll = load_history(history, k, law)
+    spring, roll = springs
     found = contact(seen, spring, roll, mass, dt, p, law)
-    store_history(history, k, found.spring, found.roll, law)
     add_contact_losses(i, seen, spring, roll, found, mass, dt, p, budget, law)
     moment_i, moment_j = moments(found, way.arm_i, way.arm_j, way.reduced, law)
     fx, fy = force_components(found, way.nx, way.ny, law)
-    return fx, fy, moment_i, moment_j
+    return (fx, fy, moment_i, moment_j), (found.spring, found.roll)
+
+
+@inline
+def contact_force(i, k, overlap, way, mass, p, history, budget, law, dt):
+    """``answer_contact`` for row k of ``history``, overwritten: force (N/m) and torques (N m/m)."""
+    answered, (spring, roll) = answer_contact(i, overlap, way, mass, p, load_history(history, k, law), budget, law, dt)
+    store_history(history, k, spring, roll, law)
+    return answered
 
 
 @inline
@@ -111,61 +118,11 @@ def row_between(i, j, shared, law, material):
 
 
 @inline
-def leave_pair(i, j, k, dx, dy, d, history, shared, law, dt, cell):
+def leave_pair(i, j, k, dx, dy, d, history, law, dt, cell):
     """Add to the budget, if any, what the springs of a pair (dx, dy) m apart still held that touched a step ago."""
     if has_budget(d.budget) and has_history(history, k, law):
         du, dv = relative_velocity(i, j, dx, dy, d.velocity, cell)
-        p = row_between(i, j, shared, law, d.material)
+        p = row_between(i, j, row_numbers(law.table[0, 0], law), law, d.material)
         overlap = d.radius[i] + d.radius[j] - np.sqrt(dx * dx + dy * dy)
         way = contact_kinematics(dx, dy, du, dv, d.spin[i], d.spin[j], d.radius[i], d.radius[j])
         release_contact(i, k, overlap, way, p, history, d.budget, law, dt)
-
-
-@inline
-def pair_contact(i, j, k, d, history, shared, law, dt, cell):
-    """Listed pair k of discs i and j: (whether they touch, force on i along x, y N/m, torques on i, j N m/m).
-
-    Arguments as in pair_forces and row_between; overwrites row k of ``history`` and adds to the load of ``cell``.
-    """
-    position, radius = d.position, d.radius
-    ri, rj = radius[i], radius[j]
-    dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
-    square = dx * dx + dy * dy
-    if square >= (ri + rj) * (ri + rj):
-        leave_pair(i, j, k, dx, dy, d, history, shared, law, dt, cell)
-        store_history(history, k, 0.0, 0.0, law)
-        return False, 0.0, 0.0, 0.0, 0.0
-    du, dv = relative_velocity(i, j, dx, dy, d.velocity, cell)
-    mass = d.body_mass[i] * d.body_mass[j] / (d.body_mass[i] + d.body_mass[j])
-    p = row_between(i, j, shared, law, d.material)
-    overlap = ri + rj - np.sqrt(square)
-    way = contact_kinematics(dx, dy, du, dv, d.spin[i], d.spin[j], ri, rj)
-    gx, gy, moment_i, moment_j = contact_force(i, k, overlap, way, mass, p, history, d.budget, law, dt)
-    add_load(gx, gy, dx, dy, cell)
-    return True, gx, gy, moment_i, moment_j
-
-
-@inline
-def pair_forces(d, pairs, law, dt, cell):
-    """Add the contacts of all listed pairs; reset the springs of those that do not touch.
-
-    d: DiscArrays;  pairs: Pairs;  law see contact/law.py;  dt s;  cell Still or Straining, whose load is added to.
-    Adds to ``d.force`` N/m and ``d.torque`` N m/m in the order of the list; overwrites ``pairs.history`` m.
-    Not checked: two centres in one place give nan, which Grains.check reports.
-    """
-    shared = row_numbers(law.table[0, 0], law)
-    for i in range(d.torque.shape[0]):
-        fx, fy, moment = 0.0, 0.0, 0.0
-        for k in range(pairs.start[i], pairs.start[i + 1]):
-            j = pairs.partner[k]
-            met, gx, gy, moment_i, moment_j = pair_contact(i, j, k, d, pairs.history, shared, law, dt, cell)
-            if met:
-                fx += gx
-                fy += gy
-                moment += moment_i
-                d.force[j, 0] -= gx
-                d.force[j, 1] -= gy
-                d.torque[j] += moment_j
-        d.force[i, 0] += fx
-        d.force[i, 1] += fy
-        d.torque[i] += moment

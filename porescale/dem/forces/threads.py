@@ -17,11 +17,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import inline, kernel, law_function, parallel_kernel, prange, threads
+from porescale.common.compiled.jit import (
+    inline,
+    kernel,
+    law_function,
+    most_threads,
+    parallel_kernel,
+    prange,
+    thread,
+    threads,
+)
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
-from porescale.dem.contact.law import row_numbers
-from porescale.dem.forces.pairs import pair_contact, pair_forces, start_forces
+from porescale.dem.forces.batch import block_far_forces, block_forces, pair_forces, scratch
+from porescale.dem.forces.pairs import start_forces
 from porescale.dem.forces.rectangle import add_rectangle_forces
 from porescale.dem.forces.walls import RUN, add_near_walls, add_plate_forces
 
@@ -31,31 +40,34 @@ BLOCK = 1024
 """Discs, in whole runs of walls.RUN: their state stays in a core's own memory; a settled pile has some hundredths of
 its pairs across blocks."""
 SERIAL_BELOW = 20_000  # discs; fewer cost less in one thread than barriers cost (spec: "below about 2e4")
-NOTHING = np.nan
-"""Put down for a far pair that does not touch: adding a zero could turn -0.0 into 0.0."""
 
 
 class Serial(NamedTuple):
     """One thread.
 
     partial (blocks, surfaces, 3) N/m, N m/m: forces on walls, plates and rectangles by block;  near (surfaces, runs):
-    which runs of discs are near each wall, see walls.mark_near; rows of other surfaces are not read.
+    which runs of discs are near each wall, see walls.mark_near; rows of other surfaces are not read;  numbers, which:
+    ``scratch`` of batch.py.
     """
 
     partial: Floats
     near: NDArray[np.uint8]
+    numbers: Floats
+    which: Index
 
 
 class Threads(NamedTuple):
     """Several threads.
 
-    partial, near : as in Serial;  far_start (n + 1,): far pairs of each disc are the last of its row and have the
-    places far_start[i]:far_start[i + 1];  incoming (f,): places of the far pairs that end at disc j, by rising lower
-    disc, incoming_start[j]:incoming_start[j + 1];  far (f, 4): force on i N/m, torques on i and j N m/m.
+    partial, near, numbers, which : as in Serial;  far_start (n + 1,): far pairs of each disc are the last of its row
+    and have the places far_start[i]:far_start[i + 1];  incoming (f,): places of the far pairs that end at disc j, by
+    rising lower disc, incoming_start[j]:incoming_start[j + 1];  far (f, 4): force on i N/m, torques on i and j N m/m.
     """
 
     partial: Floats
     near: NDArray[np.uint8]
+    numbers: Floats
+    which: Index
     far_start: Index
     incoming_start: Index
     incoming: Index
@@ -101,27 +113,20 @@ def list_far(start, partner, far_start, incoming_start, incoming):
 @parallel_kernel
 def far_forces(d, pairs, law, dt, cell, sweep):
     """Contacts of pairs across blocks: overwrites sweep.far (f, 4) and their springs.  Arguments as in pair_forces."""
-    count, shared = d.radius.shape[0], row_numbers(law.table[0, 0], law)
-    start, partner, history, far_start, far = pairs.start, pairs.partner, pairs.history, sweep.far_start, sweep.far
+    count, far_start, far, numbers, which = d.radius.shape[0], sweep.far_start, sweep.far, sweep.numbers, sweep.which
     for b in prange((count + BLOCK - 1) // BLOCK):
-        for i in range(b * BLOCK, min((b + 1) * BLOCK, count)):
-            q = far_start[i]
-            for k in range(start[i + 1] - (far_start[i + 1] - q), start[i + 1]):
-                met, gx, gy, moment_i, moment_j = pair_contact(i, partner[k], k, d, history, shared, law, dt, cell)
-                far[q, 0] = gx if met else NOTHING
-                far[q, 1], far[q, 2], far[q, 3] = gy, moment_i, moment_j
-                q += 1
+        first, last, own = b * BLOCK, min((b + 1) * BLOCK, count), thread()
+        block_far_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbers[own], which[own])
 
 
 @parallel_kernel
 def near_forces(d, pairs, law, dt, cell, sweep):
     """All forces between discs, those across blocks from ``sweep.far``: overwrites force, torque and springs."""
-    count, shared = d.radius.shape[0], row_numbers(law.table[0, 0], law)
-    start, partner, history, far_start, far = pairs.start, pairs.partner, pairs.history, sweep.far_start, sweep.far
+    count, far_start, far, numbers, which = d.radius.shape[0], sweep.far_start, sweep.far, sweep.numbers, sweep.which
     incoming_start, incoming = sweep.incoming_start, sweep.incoming
     force, torque, external_force, external_torque = d.force, d.torque, d.external_force, d.external_torque
     for b in prange((count + BLOCK - 1) // BLOCK):
-        first, last = b * BLOCK, min((b + 1) * BLOCK, count)
+        first, last, own = b * BLOCK, min((b + 1) * BLOCK, count), thread()
         for j in range(first, last):
             fx, fy, moment = external_force[j, 0], external_force[j, 1], external_torque[j]
             for place in range(incoming_start[j], incoming_start[j + 1]):
@@ -131,26 +136,7 @@ def near_forces(d, pairs, law, dt, cell, sweep):
                     fy -= far[q, 1]
                     moment += far[q, 3]
             force[j, 0], force[j, 1], torque[j] = fx, fy, moment
-        for i in range(first, last):
-            fx, fy, moment = 0.0, 0.0, 0.0
-            for k in range(start[i], start[i + 1] - (far_start[i + 1] - far_start[i])):
-                j = partner[k]
-                met, gx, gy, moment_i, moment_j = pair_contact(i, j, k, d, history, shared, law, dt, cell)
-                if met:
-                    fx += gx
-                    fy += gy
-                    moment += moment_i
-                    force[j, 0] -= gx
-                    force[j, 1] -= gy
-                    torque[j] += moment_j
-            for q in range(far_start[i], far_start[i + 1]):
-                if far[q, 0] == far[q, 0]:
-                    fx += far[q, 0]
-                    fy += far[q, 1]
-                    moment += far[q, 2]
-            force[i, 0] += fx
-            force[i, 1] += fy
-            torque[i] += moment
+        block_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbers[own], which[own])
 
 
 @law_function
@@ -162,7 +148,7 @@ def all_pair_forces(d, pairs, law, dt, cell, sweep):
 def _pairs_serial(d, pairs, law, dt, cell, sweep):
     """One thread: a single loop over the whole pair list."""
     start_forces(d)
-    pair_forces(d, pairs, law, dt, cell)
+    pair_forces(d, pairs, law, dt, cell, sweep.numbers[0], sweep.which[0])
 
 
 @all_pair_forces.of(Threads)
@@ -238,7 +224,7 @@ def add_surface_forces(d, surfaces, law, dt, sweep):
 def serial(count: int, surfaces: int) -> Serial:
     """One thread over so many discs and surfaces; all discs count as near."""
     blocks = max(1, -(-count // BLOCK))
-    return Serial(np.zeros((blocks, surfaces, 3)), np.ones((surfaces, -(-count // RUN)), np.uint8))
+    return Serial(np.zeros((blocks, surfaces, 3)), np.ones((surfaces, -(-count // RUN)), np.uint8), *scratch(1))
 
 
 class ThreadChoice:
@@ -252,6 +238,7 @@ class ThreadChoice:
         self.one = serial(count, 0)
         self.far_start, self.incoming_start = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
         self.incoming, self.far = np.zeros(0, np.int64), np.zeros((0, 4))
+        self.columns = scratch(0)
         self._builds = -1
 
     def now(self, pairs: PairList, surfaces: int, budget: bool, alone: bool = False) -> Threading:
@@ -265,7 +252,9 @@ class ThreadChoice:
             return self.one
         if self._builds != pairs.builds:
             self._renew(pairs)
-        return Threads(*self.one, self.far_start, self.incoming_start, self.incoming, self.far)
+        if len(self.columns[0]) != most_threads():
+            self.columns = scratch(most_threads())
+        return Threads(*self.one[:2], *self.columns, self.far_start, self.incoming_start, self.incoming, self.far)
 
     def _renew(self, pairs: PairList) -> None:
         """Number the far pairs of the list as it is now."""

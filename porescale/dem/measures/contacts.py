@@ -16,7 +16,7 @@ from porescale.common.core.types import Floats
 from porescale.dem.arrays import DiscArrays, Pairs, Surface
 from porescale.dem.bodies.rigid import arms, clumps_of
 from porescale.dem.contact.law import MU, springs_of
-from porescale.dem.forces.pairs import pair_forces
+from porescale.dem.forces.batch import pair_forces, scratch
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
 from porescale.dem.forces.walls import HIGH, LOW, NX, PRESENT, PX, X, add_plate_forces, add_wall_forces
 from porescale.dem.listing import current_pairs
@@ -65,7 +65,8 @@ def _pairs(grains: State) -> Contacts:
     start = np.repeat(np.arange(count + 1), 2)[1:]  # discs 2k have one partner, 2k + 1 none
     carried = pairs.carried[near].copy()
     alone = Pairs(start, (2 * np.arange(count) + 1).astype(np.int32), carried, both.position, 0.0)
-    pair_forces(both, alone, grains.contact, grains.last_dt, grains.cell)
+    numbers, which = scratch(1)
+    pair_forces(both, alone, grains.contact, grains.last_dt, grains.cell, numbers[0], which[0])
     distance = np.hypot(*apart.T)
     normal = apart / distance[:, None]
     arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[j] ** 2) / distance)

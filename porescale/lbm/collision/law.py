@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from porescale.common.compiled.jit import inline, law_function, precision_constants, unchecked_view
+from porescale.common.compiled.jit import disjoint, inline, law_function, precision_constants, unchecked_view
 
 
 class Macroscopic(NamedTuple):
@@ -214,6 +214,25 @@ def cut(planes, first, n):
     )
 
 
+@disjoint
+def collide_cells(planes, laws):
+    """Collide all cells of nine slots (n,), overwritten as in ``collide_row``;  laws: of ``part_law``."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = planes
+    for x in range(a0.shape[0]):
+        law = cell_law(x, laws)
+        c = numbers(law.rate)
+        hx, hy = half_force(law)
+        f = (a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
+        d, jx, jy = moments(f)
+        jx += hx
+        jy += hy
+        specific_volume = c.one / (c.one + d)
+        m = Macroscopic(d, jx, jy, jx * specific_volume, jy * specific_volume)
+        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f, m, shear_rate(f, m, law), law)
+        a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
+        a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8
+
+
 @inline
 def collide_row(planes, first, last, law):
     """Collide cells ``first`` to ``last`` - 1 of one row; overwrites its nine slots.
@@ -221,18 +240,4 @@ def collide_row(planes, first, last, law):
     planes: nine arrays (nx,), the slots where the row's h_i are read; the collided h_i goes to the slot of the opposite
     direction.  Not checked: that density stays positive.
     """
-    c = numbers(law.rate)
-    laws = part_law(first, last, law)
-    a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut(planes, first, last - first)
-    for x in range(a0.shape[0]):
-        here = cell_law(x, laws)
-        hx, hy = half_force(here)
-        f = (a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
-        d, jx, jy = moments(f)
-        jx += hx
-        jy += hy
-        specific_volume = c.one / (c.one + d)
-        m = Macroscopic(d, jx, jy, jx * specific_volume, jy * specific_volume)
-        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f, m, shear_rate(f, m, here), here)
-        a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
-        a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8
+    collide_cells(cut(planes, first, last - first), part_law(first, last, law))

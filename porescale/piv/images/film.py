@@ -18,6 +18,7 @@ from porescale.common.core.ranges import Range
 from porescale.piv import given
 from porescale.piv.images import stacks
 from porescale.piv.images.numbered import doubt_of_order, natural
+from porescale.piv.images.rendered import measured_with
 
 Picture = NDArray[Any]
 Box = tuple[int, int, int, int]
@@ -164,7 +165,9 @@ def opened(names: Sequence[str | Path], **chosen: Any) -> Film:
         else:
             return Film((path,), rate=_rate(path), **chosen)
         if len(files) < 2:
-            raise InputError(Fault("film", str(path), f"{len(files)} pictures there", repair="give two or more"))
+            rendered = measured_with(path)
+            repair = f"those of `piv render` are measured with {rendered}" if rendered else "give two or more"
+            raise InputError(Fault("film", str(path), f"{len(files)} pictures there", repair=repair))
         return Film(tuple(files), **chosen)
     for stack in (it for it in names if stacks.is_stack(Path(it))):
         repair = "give it alone, or single pictures"

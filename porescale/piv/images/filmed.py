@@ -16,6 +16,7 @@ from porescale.common.core.atomic import write_bytes, write_text
 from porescale.common.pictures.film import write_film
 from porescale.common.record.open_run import Run
 from porescale.piv.images.camera import ROUNDING, Shooting, frames
+from porescale.piv.images.rendered import FRAMES, MASKS, SHOT
 
 LOG = logging.getLogger(__name__)
 PATIENCE = 10.0
@@ -29,7 +30,7 @@ def write_frames(run: Run, shot: Shooting, folder: Path) -> int:
 
     What an earlier film left in ``frames`` and ``masks`` goes.  One frame is in memory at a time.
     """
-    for name in ("frames", "masks"):
+    for name in (FRAMES, MASKS):
         for old in (folder / name).glob("[0-9]*.png"):
             old.unlink()
     count = 0
@@ -41,7 +42,7 @@ def write_frames(run: Run, shot: Shooting, folder: Path) -> int:
         nonlocal count, last
         for frame in frames(run, shot):
             mask = np.where(frame.solid, 255, 0).astype(np.uint8)
-            for name, image in (("frames", frame.picture), ("masks", mask)):
+            for name, image in ((FRAMES, frame.picture), (MASKS, mask)):
                 write_bytes(folder / name / f"{count:05d}.png", cv2.imencode(".png", image)[1].tobytes())
             count += 1
             now = time.perf_counter()
@@ -53,5 +54,5 @@ def write_frames(run: Run, shot: Shooting, folder: Path) -> int:
             yield np.repeat(frame.picture[:rows, :columns, None], 3, 2)
 
     write_film(folder / "film", painted(), RATE)
-    write_text(folder / "shooting.json", json.dumps({"run": str(run.folder), **asdict(shot)}, indent=1) + "\n")
+    write_text(folder / SHOT, json.dumps({"run": str(run.folder), **asdict(shot)}, indent=1) + "\n")
     return count

@@ -111,7 +111,8 @@ class Container(Section):
     """Long segments that hold grains: a box, a hopper, a drum.  Kept out of the cells of the neighbour search.
 
     It stands still but for the components that are prescribed; ``pivot`` is the point that x and y move and about which
-    it turns.  What it takes is in control.csv.
+    it turns: anywhere, as the hinge of a door, but amid its points where a force moves it.  What it takes is in
+    control.csv.
     """
 
     chain: Points = quantity("m", (), **PLACE, help="points from which to which its segments go")

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from numba.core.caching import NullCache
 
-from porescale.common.compiled.jit import kernel, prefetch, set_threads, threads, unchecked_view
+from porescale.common.compiled.jit import disjoint, inline, kernel, prefetch, set_threads, threads, unchecked_view
 from porescale.common.core.errors import InputError
 
 
@@ -32,3 +33,23 @@ def test_parts_are_slices(dtype):
     double(values)
     np.testing.assert_array_equal(values, expected)
     np.testing.assert_array_equal(unchecked_view(values, 3, 8), values[3:11])
+
+
+@pytest.mark.parametrize(("how", "compared"), [(disjoint, False), (inline, True)])
+def test_arrays_that_share_no_memory_are_not_compared(how, compared):
+    @how
+    def add(a, b, c):
+        for i in range(a.shape[0]):
+            c[i] = a[i] + b[i]
+
+    @kernel
+    def sums(values, n):
+        add(unchecked_view(values, 0, n), unchecked_view(values, n, n), unchecked_view(values, 2 * n, n))
+
+    vars(sums.compiled)["_cache"] = NullCache()  # what is read from disk has no intermediate code
+    values = np.arange(300.0)
+    sums(values, 100)
+    np.testing.assert_array_equal(values[200:], values[:100] + values[100:200])
+    (code,) = sums.compiled.inspect_llvm().values()
+    assert "x double>" in code  # several at a time
+    assert ("vector.memcheck" in code) == compared

@@ -7,7 +7,8 @@ from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.arrays import Pairs, contact_arrays
 from porescale.dem.contact.linear import Linear, LinearKernel
 from porescale.dem.forces import threads as sweep
-from porescale.dem.forces.pairs import pair_forces, start_forces
+from porescale.dem.forces.batch import pair_forces, scratch
+from porescale.dem.forces.pairs import start_forces
 from porescale.dem.motion.periodic_cell import Still
 
 LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)
@@ -38,7 +39,8 @@ def test_blocks_of_any_size_give_the_bits_of_the_loop(block, monkeypatch):
     force, torque, springs = np.zeros((count, 2)), np.zeros(count), pairs.carried.copy()
     loop = discs._replace(force=force, torque=torque, external_force=given[0], external_torque=given[1])
     start_forces.py_func(loop)
-    pair_forces.py_func(loop, listed(pairs, springs), law, 1e-5, cell)
+    columns = scratch(1)
+    pair_forces.py_func(loop, listed(pairs, springs), law, 1e-5, cell, *(it[0] for it in columns))
     far_start, incoming_start = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
     total = sweep.list_far.py_func(pairs.start, pairs.partner, far_start, incoming_start, np.zeros(0, np.int64))
     incoming, far = np.zeros(total, np.int64), np.zeros((total, 4))
@@ -46,7 +48,8 @@ def test_blocks_of_any_size_give_the_bits_of_the_loop(block, monkeypatch):
     assert sorted(incoming) == list(range(total))
     again, twist, kept = np.full((count, 2), np.nan), np.full(count, np.nan), pairs.carried.copy()
     blocks = loop._replace(force=again, torque=twist)
-    threads = sweep.Threads(np.zeros((0, 0, 3)), np.zeros((0, 0), np.uint8), far_start, incoming_start, incoming, far)
+    around = np.zeros((0, 0, 3)), np.zeros((0, 0), np.uint8)
+    threads = sweep.Threads(*around, *columns, far_start, incoming_start, incoming, far)
     sweep.far_forces.py_func(blocks, listed(pairs, kept), law, 1e-5, cell, threads)
     sweep.near_forces.py_func(blocks, listed(pairs, kept), law, 1e-5, cell, threads)
     if block < 30:
@@ -64,7 +67,8 @@ def test_the_external_force_added_last_gives_other_bits():  # the twin that must
     loop = discs._replace(force=force, torque=torque, external_force=given[0], external_torque=given[1])
     start_forces.py_func(loop)
     for total in (force, wrong):
-        pair_forces.py_func(loop._replace(force=total), listed(pairs, pairs.carried.copy()), law, 1e-5, Still(0.0, 0.0))
+        again, columns = loop._replace(force=total), [it[0] for it in scratch(1)]
+        pair_forces.py_func(again, listed(pairs, pairs.carried.copy()), law, 1e-5, Still(0.0, 0.0), *columns)
     wrong += given[0]
     np.testing.assert_allclose(force, wrong, rtol=1e-9, atol=1e-6)
     assert (force != wrong).any()

@@ -6,7 +6,7 @@ import pytest
 from porescale.common.core.errors import InputError
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.forces import pairs as forces
+from porescale.dem.forces.batch import pair_forces, scratch
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import kinetic_energy, max_overlap
@@ -63,7 +63,7 @@ def test_the_choice_of_images_changes_no_force():
         now = Straining(width, height, lean, -0.3, 2.0, 0.2, load)
         discs = grains.disc_arrays()._replace(position=position, force=force, torque=torque)
         listed = grains.pair_arrays()._replace(history=pairs.carried.copy())
-        forces.pair_forces(discs, listed, grains.contact, 1e-5, now)
+        pair_forces(discs, listed, grains.contact, 1e-5, now, *(it[0] for it in scratch(1)))
         sums.append((force, torque, load))
     # Distances of 1e-2 m from numbers of up to 1 m: eps each, times k.
     for other in sums[1:]:
@@ -84,7 +84,7 @@ def test_images_without_the_tilt_are_other_forces():  # the twin that must fail
         discs = grains.disc_arrays()._replace(force=force, torque=torque)
         listed = grains.pair_arrays()._replace(history=pairs.carried.copy())
         now = Straining(width, height, lean, 0.0, 2.0, 0.0, np.zeros(5))
-        forces.pair_forces(discs, listed, grains.contact, 1e-5, now)
+        pair_forces(discs, listed, grains.contact, 1e-5, now, *(it[0] for it in scratch(1)))
         found.append(force)
     assert np.abs(found[0] - found[1]).max() > 1.0
 
@@ -233,7 +233,7 @@ def test_kernels_do_the_same_as_plain_python():
         load = np.zeros(5)
         now = Straining(*(float(v) for v in cell.state[:3]), 0.1, 0.2, 0.3, load)
         discs = grains.disc_arrays()
-        run(forces.pair_forces)(discs, grains.pair_arrays(), grains.contact, 1e-5, now)
+        run(pair_forces)(discs, grains.pair_arrays(), grains.contact, 1e-5, now, *(it[0] for it in scratch(1)))
         run(strain.steer_deforming)(d.velocity, d.mass, 1, 1e-5, cell)
         run(strain.affine_kick_drift)(discs, 0.1, 0.2, 0.3, 0.4, 1e-5)
         run(strain.strain)(cell.state, 1e-5)
