@@ -218,6 +218,10 @@ class Scene(SceneBase):
         if soil.water_table is not None and soil.water_table > (1.0 + WHOLE) * self.tank.height:
             faults.append(Fault("soil.water_table", soil.water_table, "lies over the tank", "m",
                                 f"<= {self.tank.height:g}"))  # fmt: skip
+        lowest = min(it[1] for body in soil.body for it in body.outline) + 0.5 * self.numerics.spacing
+        if soil.water_table is not None and soil.water_table < lowest * (1.0 - WHOLE):
+            faults.append(Fault("soil.water_table", soil.water_table, "lies under all particles of the soil", "m",
+                                f">= {lowest:g}", "raise it, or leave it out where pores are empty"))  # fmt: skip
         if soil.held and soil.watch:
             faults.append(Fault("soil.watch", "given", "has no displacement in soil that is held",
                                 repair="take out soil.watch or soil.held"))  # fmt: skip

@@ -8,6 +8,7 @@ from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.scene.material_file import VISCOSITY, Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection
+from continuum_sph.soil.material import Material
 from continuum_sph.soil.parameters import RULES
 from porescale.common.api.report import Report, report_output
 from porescale.common.core.constants import GRAVITY
@@ -52,6 +53,7 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
         out.row("stress ratio at failure", (1.0 + math.sin(phi)) / (1.0 - math.sin(phi)), "", "without cohesion")
         limit = math.atan(math.sin(phi) * math.cos(psi) / (1.0 - math.sin(phi) * math.sin(psi)))
         out.row("angle at which an endless slope shears", math.degrees(limit), "degrees", "without cohesion")
+    warn_of_rest(out, section, material, material.density * scene.gravity * section.height)
     report_rate(out, section, wet=section.suction is not None)
     out.heading("steps")
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
@@ -67,6 +69,19 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
     if strain > 10.0 * SOFTEST:
         out.warn(f"the soil's weight strains it by {100.0 * strain:.3g} %: raise soil.stiffness")
     return out
+
+
+def warn_of_rest(out: Report, section: SoilSection, material: Material, weight: float) -> None:
+    """Warn of stresses at the start that the soil cannot bear where it carries a ``weight``, Pa."""
+    if section.rest is None or section.elastic or section.stress != "geostatic":
+        return
+    sine, held = material.sin_friction, 2.0 * material.cohesion_intercept / max(weight, 1e-300)
+    least, most = max(0.0, (1.0 - sine - held) / (1.0 + sine)), (1.0 + sine + held) / (1.0 - sine)
+    if not least * (1.0 - 1e-9) <= section.rest <= most * (1.0 + 1e-9):
+        out.warn(
+            f"soil.rest = {section.rest:g} is beyond the strength at the foot of the ground, which bears {least:.3g} "
+            f"to {most:.3g}: it yields in the first step"
+        )
 
 
 def report_rate(out: Report, section: SoilSection, *, wet: bool) -> None:

@@ -128,6 +128,8 @@ def share(option: str, text: str) -> float:
         found = float(number) / (100 if sign else 1)
     except ValueError:
         found = math.nan
+    if not text.strip():
+        raise InputError(Fault(option, None, "has no share", "", "> 0", "write one, as 5% or 0.05"))
     if rest.strip() or not 0 < found < math.inf:
         raise InputError(Fault(option, text, "is not a positive share", "", "> 0", "write it as 5% or 0.05"))
     if found > 1 and not sign:

@@ -102,6 +102,8 @@ def test_shares_and_times_are_read_as_people_write_them():
     for wrong in ("", "5%%", "-1%", "nan", "inf", "0"):
         with pytest.raises(InputError):
             share("--error", wrong)
+    with pytest.raises(InputError, match=r"^--until: has no share \(allowed: > 0\); write one, as 5% or 0\.05$"):
+        share("--until", "")
     assert share("--error", "250%") == 2.5  # as it is written; a bare number beyond 1 is per cent without the sign
     assert share("--error", "1") == 1.0
     with pytest.raises(InputError, match=r"^--error = '10': is 1000 % \(allowed: <= 1\); write it as 10%$"):

@@ -122,6 +122,14 @@ def test_a_water_table_over_the_tank_is_refused():
         kept(POOL, soil={"held": True, "water_table": 5})
 
 
+def test_a_water_table_under_all_of_the_soil_is_refused():
+    spacing = kept(POOL).numerics.spacing
+    kept(POOL, soil={"held": True, "water_table": 0.5 * spacing})
+    said = rf"soil\.water_table = 0\.0 m: lies under all particles of the soil \(allowed: >= {0.5 * spacing:g} m\)"
+    with pytest.raises(InputError, match=said):
+        kept(POOL, soil={"held": True, "water_table": 0})
+
+
 def test_a_spacing_too_large_for_a_side_is_what_is_wrong_with_its_face():
     full = {"water": {"sound_speed": 60.0}, "tank": {"width": 1.0, "height": 0.5}}
     full |= {"soil": {"held": True, "saturated": True, "body": [{"outline": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]}]}}

@@ -278,6 +278,25 @@ def test_a_report_says_what_the_soil_can_bear():
     assert any("soil.stiffness" in warning for warning in soft.warnings)
 
 
+@pytest.mark.parametrize("cohesion", [0.0, 1000.0])
+def test_a_stress_at_rest_beyond_the_strength_is_warned_of(cohesion):
+    given = scene(cohesion=cohesion)
+    sine = math.sin(given.soil.friction_angle)
+    weight = given.soil.density * given.gravity * given.soil.height
+    # Mohr-Coulomb for stresses w and K w: (K - 1) w = (K + 1) w sin phi + 2 c cos phi
+    held = 2.0 * cohesion * math.cos(given.soil.friction_angle) / weight
+    most, least = (1.0 + sine + held) / (1.0 - sine), (1.0 - sine - held) / (1.0 + sine)
+
+    def warned(rest):
+        report = soil_report(scene(cohesion=cohesion, rest=rest))
+        return any(it.startswith("soil.rest = ") for it in report.warnings)
+
+    assert not warned(0.99 * most)
+    assert warned(1.01 * most)
+    assert not warned(max(0.0, 1.01 * least))
+    assert warned(0.99 * least) == (least > 0.0)
+
+
 @pytest.mark.parametrize(
     ("soil", "key"),
     [
