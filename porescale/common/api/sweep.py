@@ -49,14 +49,7 @@ def sweep(
     from porescale.common.record.series import run_table
     from porescale.common.studies.ensemble import Repeats, ensembles, repeated
     from porescale.common.studies.runner import FINISHED, Campaign
-    from porescale.common.studies.sweep import (
-        check_points,
-        columns_at_end,
-        expected,
-        require_alone,
-        require_same,
-        run_points,
-    )
+    from porescale.common.studies.sweep import check_points, columns_at_end, expected, require_folder, run_points
     from porescale.common.studies.sweep_files import ensemble_lines, keys_of, lines_of
 
     pd = extra("pandas")
@@ -79,8 +72,7 @@ def sweep(
     beside = file if given is None else scene.source.file
     rows = expected(beside) if beside is not None else []
     campaign = Campaign(program.module, file, folder, texts, quality, threads, again)
-    require_alone(campaign, points, IN_PYTHON)
-    require_same(program, file, campaign, points)
+    require_folder(program, file, campaign, points, IN_PYTHON)
     command = f"{program.module}.sweep"
     ends = run_points(campaign, points, jobs, rows, command, log.info)
     for ended in ends:

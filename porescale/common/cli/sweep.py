@@ -13,14 +13,7 @@ from porescale.common.api.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.studies.sweep import (
-    check_points,
-    columns_at_end,
-    expected,
-    require_alone,
-    require_same,
-    run_points,
-)
+from porescale.common.studies.sweep import check_points, columns_at_end, expected, require_folder, run_points
 
 if TYPE_CHECKING:
     from porescale.common.studies.ensemble import Repeats
@@ -87,8 +80,7 @@ def command(package: Package) -> Callable[..., int]:
         folder = output_folder(out, f"{name}_sweep")
         campaign = Campaign(package.module, file, folder, tuple(settings or ()), quality, threads or 1, again)
         enlist(campaign, jobs, scheduler)
-        require_alone(campaign, points)
-        require_same(package, start, campaign, points)
+        require_folder(package, start, campaign, points)
         varying = [word for text in vary or () for word in ("--vary", text)]
         words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying, *asked.options()]
         command_line = shlex.join([*words, *laid_over(quality, settings)])

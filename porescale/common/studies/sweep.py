@@ -93,7 +93,15 @@ def check_points(
     return find(scene), read.name
 
 
-def require_alone(campaign: Campaign, points: Sequence[Point], words: Words = TYPED) -> None:
+def require_folder(
+    program: Program, scene: Path, campaign: Campaign, points: Sequence[Point], words: Words = TYPED
+) -> None:
+    """InputError where the folder of a sweep holds runs that are none of this ``scene`` at these ``points``."""
+    require_alone(campaign, points, words)
+    require_same(program, scene, campaign, points)
+
+
+def require_alone(campaign: Campaign, points: Sequence[Point], words: Words) -> None:
     """InputError where the folder of a sweep holds runs that are none of its ``points``."""
     names = {point.name for point in points}
     others = sorted(it.parent.name for it in campaign.folder.glob(f"*/{CARD}") if it.parent.name not in names)

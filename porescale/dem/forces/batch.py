@@ -176,12 +176,7 @@ def block_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbers, 
     far_start, far: of Threads, None where all discs are one block;  the rest as in pair_forces.
     """
     force, torque = d.force, d.torque
-    gx, gy, turn_i, turn_j = (
-        column(numbers, FX),
-        column(numbers, FY),
-        column(numbers, MOMENT_I),
-        column(numbers, MOMENT_J),
-    )
+    gx, gy, turn_i, turn_j = answered(numbers)
     dx, dy, springs, rolls = column(numbers, DX), column(numbers, DY), column(numbers, SPRING), column(numbers, ROLL)
     one, other, listed = column(which, ONE_DISC), column(which, OTHER), column(which, PAIR)
     i, k, now = first, 0, first
@@ -209,12 +204,7 @@ def block_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbers, 
 def block_far_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbers, which):
     """Contacts of discs ``first`` to ``last`` - 1 with partners in later blocks: overwrites their places of ``far``
     (f, 4), and springs.  Arguments as in block_forces."""
-    gx, gy, turn_i, turn_j = (
-        column(numbers, FX),
-        column(numbers, FY),
-        column(numbers, MOMENT_I),
-        column(numbers, MOMENT_J),
-    )
+    gx, gy, turn_i, turn_j = answered(numbers)
     springs, rolls = column(numbers, SPRING), column(numbers, ROLL)
     one, listed = column(which, ONE_DISC), column(which, PAIR)
     for q in range(far_start[first], far_start[last]):
