@@ -134,16 +134,31 @@ def pore_water(scene: Scene, soil: Floats) -> tuple[Floats, Floats]:
     return pores, surface_over(scene, pores, top) - pores[:, 1]
 
 
+def head_on_lid(scene: Scene, count: int) -> float:
+    """Head (m) over the lid under which water that fills the tank rests: the lowest of its faces at the start.
+
+    0 where there is no face or water has a surface: where it has fewer particles, ``count``, than fit under a lid.  Water
+    that starts without that head is pressed together by p/ρc² before it flows, and rows beside the faces with it: flow
+    of half a head's fall in 24 cm, 5 m deep and with sound at 50 m/s, was 9 % low after 0.1 s, 27 % after 0.8 s.
+    """
+    width, height = scene.inner
+    rows, columns = round(height / scene.numerics.spacing), round(width / scene.numerics.spacing)
+    if not scene.face or not scene.tank.lid or count < rows * columns:
+        return 0.0
+    return max(0.0, min(it.table[0][1] for it in scene.face) - height)
+
+
 def saturate(scene: Scene, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
     """Places, velocities (n, 2) and densities (n,) of water with that in pores of ``soil`` (s, 2) m that have none and
     lie under the surface of the ground or the water table: at rest, as are columns that end below full pores."""
     pores, depth = pore_water(scene, soil)
-    more = water_state(scene).settled_density(depth, scene.gravity)
+    lid = head_on_lid(scene, len(x) + len(pores))
+    more = water_state(scene).settled_density(depth + lid, scene.gravity)
     table = wet_top(scene, x)
-    if table is not None and scene.water.pressure == "hydrostatic":
-        inside = np.any([body.holds(x) for body in soil_section(scene).body], axis=0) & (table > x[:, 1])
-        over = surface_over(scene, x, np.where(inside, table, x[:, 1]))
-        alone = surface_over(scene, x, x[:, 1])
+    if (table is not None or lid > 0.0) and scene.water.pressure == "hydrostatic":
+        inside = np.any([body.holds(x) for body in soil_section(scene).body], axis=0)
+        start = x[:, 1] if table is None else np.where(inside & (table > x[:, 1]), table, x[:, 1])
+        over, alone = surface_over(scene, x, start) + lid, surface_over(scene, x, x[:, 1])
         rho = np.where(over > alone, water_state(scene).settled_density(over - x[:, 1], scene.gravity), rho)
     return np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores))), np.concatenate((rho, more))
 
