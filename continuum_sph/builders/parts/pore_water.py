@@ -137,9 +137,9 @@ def pore_water(scene: Scene, soil: Floats) -> tuple[Floats, Floats]:
 def head_on_lid(scene: Scene, count: int) -> float:
     """Head (m) over the lid under which water that fills the tank rests: the lowest of its faces at the start.
 
-    0 where there is no face or water has a surface: where it has fewer particles, ``count``, than fit under a lid.  Water
-    that starts without that head is pressed together by p/ρc² before it flows, and rows beside the faces with it: flow
-    of half a head's fall in 24 cm, 5 m deep and with sound at 50 m/s, was 9 % low after 0.1 s, 27 % after 0.8 s.
+    0 where there is no face or water has a surface: where it has fewer particles, ``count``, than fit under a lid.
+    Water that starts without that head is pressed together by p/ρc² before it flows, and rows beside the faces with it:
+    flow under a gradient of 0.5 over 24 cm, 5 m deep, sound at 50 m/s, was 9 % low after 0.1 s, 27 % after 0.8 s.
     """
     width, height = scene.inner
     rows, columns = round(height / scene.numerics.spacing), round(width / scene.numerics.spacing)

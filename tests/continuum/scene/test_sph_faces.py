@@ -57,9 +57,9 @@ def steady(given, seconds=0.3):
 )  # fmt: skip
 def test_flow_between_two_sides_is_darcys(one, other, along, across):
     """A linear head is exact for the faces and for corrected gradients.  Each face is known to a twentieth of a
-    spacing, by so much of a row's fall the heads beside it zig-zag: two of them are 1.25 % of eight rows, once rows beside
-    the faces have found their places under their weight, which drives 1.5 % more at first.  It lasts, as particles
-    behind the faces go along with the water: where they stay it falls by 18 % a second."""
+    spacing, by so much of a row's fall the heads beside it zig-zag: two of them are 1.25 % of eight rows, once rows
+    beside the faces have found their places under their weight, which drives 1.5 % more at first.  It lasts, as
+    particles behind the faces go along with the water: where they stay it falls by 18 % a second."""
     exact = K * 0.2 / along * across
     _, row = steady(scene(pair(one, other, 0.2)), 1.0)
     assert row["high flow in (m2/s)"] == pytest.approx(exact, rel=0.0125)
