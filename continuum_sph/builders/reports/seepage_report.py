@@ -11,7 +11,13 @@ from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, w
 from continuum_sph.builders.parts.sheet_pile import LEAST, LEAST_BARE, OPEN, given_heads, ground_at, resolved
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
-from continuum_sph.builders.reports.soil_report import SNAPSHOT, report_origin, report_rate, report_watched
+from continuum_sph.builders.reports.soil_report import (
+    SNAPSHOT,
+    report_origin,
+    report_rate,
+    report_watched,
+    warn_of_steep_faces,
+)
 from continuum_sph.builders.reports.time_report import report_run
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
@@ -70,6 +76,7 @@ def seepage_report(scene: Scene) -> Report:
         air_report(out, scene, law, air)
     cost(scene, out, law, step, Counts(len(soil), water + air, waiting))
     report_rate(out, section, wet=True)
+    warn_of_steep_faces(scene, out)
     report_origin(out, section.origin)
     if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < STANDS:
         out.warn(
