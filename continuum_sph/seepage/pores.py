@@ -21,7 +21,7 @@ from continuum_sph.seepage.mixture import (
     share_forces,
 )
 from continuum_sph.seepage.overlap import Overlap, Reach
-from continuum_sph.seepage.pressure_face import PressureFace, follow, prescribe_pressure
+from continuum_sph.seepage.pressure_face import PressureFace, continue_in_corners, follow, prescribe_pressure
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.sheet_pile import CutPairList
 from continuum_sph.seepage.skeleton import Skeleton
@@ -144,6 +144,10 @@ class PoreFlow(Flow):
             prescribe_pressure(
                 face.rows, face.pressure, self.near(smoothing.kind), layer.x, layer.record, layer.pressure, *face.point,
                 *face.normal,
+            )  # fmt: skip
+            continue_in_corners(
+                face.corners, self.near(smoothing.kind), layer.x, layer.v, layer.record, layer.pressure,
+                *self.law.gravity,
             )  # fmt: skip
 
     def update_pull(self) -> None:

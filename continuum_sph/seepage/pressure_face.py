@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.water.bundles import Neighbours, image
+from continuum_sph.water.pressure_walls import wall_mean
 from continuum_sph.water.rates_walls import corrected
 from continuum_sph.water.smoothing import kernel_slope, kernel_value
 from continuum_sph.water.state import VOLUME, VX, VY, Layer, P, X, Y
@@ -38,8 +39,9 @@ class PressureFace:
     """A face of given pressure.
 
     rows : (k,) numbers of its wall particles;  point : (x, y) m on it;  normal : (x, y) of unit length, into the
-    water;  pressure : (k,) Pa, at the foot of each particle, settable at any time;  columns : (m, layers) numbers of
-    those behind each other;  whole, slope : (m,) 1/m and 1/m², push of each column on the water of the start
+    water;  pressure : (k,) Pa, at the foot of each particle, settable at any time;  corners : (l,)
+    numbers of the wall particles behind it that lie beyond its ends, in corners of the tank;  columns : (m, layers)
+    numbers of those of ``rows`` behind each other;  whole, slope : (m,) 1/m and 1/m², push of each column on the water of the start
     (`push_of`), and how it grows as the column moves along the normal.
     """
 
@@ -47,6 +49,7 @@ class PressureFace:
     point: tuple[float, float]
     normal: tuple[float, float]
     pressure: Floats
+    corners: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     columns: NDArray[np.int64] = field(init=False)
     whole: Floats = field(init=False)
     slope: Floats = field(init=False)
@@ -119,6 +122,21 @@ def prescribe_pressure(rows, given, near, x, record, pressure, ox, oy, nx, ny):
             record[w, VY] = uy / weight
         record[w, P] = behind
         pressure[w] = behind
+
+
+@parallel_kernel
+def continue_in_corners(corners, near, x, v, record, pressure, gx, gy):
+    """Overwrites pressure of the wall particles ``corners`` (l,) in ``record`` and ``pressure`` (n,) Pa with that of the
+    water before them continued, of either sign.
+
+    near: see `water.bundles`;  x, v (n, 2) m, m/s;  (gx, gy): gravity, m/s².
+    """
+    for number in prange(corners.shape[0]):
+        w = corners[number]
+        if near.start[w] < near.split[w]:
+            p, _, _ = wall_mean(w, near, x, v, record, pressure, gx, gy)
+            record[w, P] = p
+            pressure[w] = p
 
 
 @inline

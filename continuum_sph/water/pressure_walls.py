@@ -18,7 +18,7 @@ from porescale.common.core.types import Floats
 def wall_mean(w, near, x, v, record, pressure, gx, gy):
     """Pressure (Pa) and mean fluid velocity (m/s) at wall particle w from its fluid partners.
 
-    p_w = Σ (p_f + ρ_f g · (x_w - x_f)) W / Σ W.  Not below zero: a wall does not pull on a free surface's fluid.
+    p_w = Σ (p_f + ρ_f g · (x_w - x_f)) W / Σ W, of either sign.
     """
     kind, h = kernel_kind(near.kind), near.h
     weight = 0.0
@@ -35,13 +35,14 @@ def wall_mean(w, near, x, v, record, pressure, gx, gy):
         ux += record[j, VX] * value
         uy += record[j, VY] * value
     if weight > 0.0:
-        return max(0.0, p / weight), ux / weight, uy / weight
+        return p / weight, ux / weight, uy / weight
     return 0.0, v[w, 0], v[w, 1]
 
 
 @parallel_kernel
 def load_walls(fluid, near, x, v, mass, record, pressure, ghost, gx, gy, density0):
-    """Give wall particles (rows ``fluid`` on) the pressure and velocity of the fluid before them.
+    """Give wall particles (rows ``fluid`` on) the pressure and velocity of the fluid before them.  Their pressure is
+    not below zero: a wall does not pull on a free surface's fluid.
 
     Overwrites the rows of ``record`` (n, 8) and ``ghost`` (n, 2) of those that have fluid for partners, and all of
     their ``pressure`` (n,);  ghost: 2 v_wall - mean fluid velocity: the average of fluid and ghost is then the wall's
@@ -53,6 +54,7 @@ def load_walls(fluid, near, x, v, mass, record, pressure, ghost, gx, gy, density
             pressure[w] = 0.0  # and no fluid reads the rest
             continue
         p, ux, uy = wall_mean(w, near, x, v, record, pressure, gx, gy)
+        p = max(0.0, p)
         pressure[w] = p
         record[w, X] = x[w, 0]
         record[w, Y] = x[w, 1]

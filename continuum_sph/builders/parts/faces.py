@@ -22,14 +22,15 @@ def pressure_face(
 ) -> PressureFace:
     """The face of a section in a tank of a ``size`` (width, height), m.
 
-    x (n, 2) m: all particles;  walls : numbers of the wall particles of the tank, of which those in corners are none of
-    a face's;  weight : ρ g, N/m³.
+    x (n, 2) m: all particles;  walls : numbers of the wall particles of the tank, of which those in corners stay walls;
+    weight : ρ g, N/m³.
     """
     axis, (at, inward), (start, end) = section.axis, section.across(size), section.reach(size)
     along, beyond = x[walls, axis], (x[walls, 1 - axis] - at) * inward
     own = (beyond < 0.0) & (along > max(start, 0.0)) & (along < min(end, size[axis]))
+    ends = (beyond < 0.0) & (((along < 0.0) & (start <= 0.0)) | ((along > size[axis]) & (end >= size[axis])))
     point, normal = ((0.0, at), (0.0, inward)) if axis == 0 else ((at, 0.0), (inward, 0.0))
-    face = PressureFace(walls[own], point, normal, np.zeros(int(own.sum())))
+    face = PressureFace(walls[own], point, normal, np.zeros(int(own.sum())), walls[ends])
     face.hydrostatic(x, section.table[0][1], weight)
     return face
 
