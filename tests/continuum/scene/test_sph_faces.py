@@ -57,13 +57,29 @@ def steady(given, seconds=0.3):
 )  # fmt: skip
 def test_flow_between_two_sides_is_darcys(one, other, along, across):
     """A linear head is exact for the faces and for corrected gradients.  Each face is known to a twentieth of a
-    spacing, by so much of a row's fall the heads beside it zig-zag: two of them are 1.25 % of eight rows, once rows
-    beside the faces have found their places under their weight, which drives 1.5 % more at first.  It lasts, as
+    spacing, by so much of a row's fall the heads beside it zig-zag: two of them are 1.25 % of eight rows.  It lasts, as
     particles behind the faces go along with the water: where they stay it falls by 18 % a second."""
     exact = K * 0.2 / along * across
-    _, row = steady(scene(pair(one, other, 0.2)), 1.0)
+    _, row = steady(scene(pair(one, other, 0.2)), 0.8)
     assert row["high flow in (m2/s)"] == pytest.approx(exact, rel=0.0125)
     assert row["low flow in (m2/s)"] == pytest.approx(-exact, rel=0.0125)
+
+
+def test_flow_is_darcys_under_a_small_fall_too(monkeypatch):
+    """The lid is the ground's surface, where water flows out at no pressure.  1.25 %, as above, however small the fall
+    is beside the weight of the water, which moves nothing: it drove 14 and 21 % more in and out under this one."""
+    fall = 0.05 * HIGH
+    faces = [{"name": "high", "side": "floor", "head": HIGH + fall}, {"name": "low", "side": "lid", "head": HIGH}]
+    exact = K * fall / HIGH * WIDE
+
+    def flows():
+        _, row = steady(scene(faces), 0.4)
+        return row["high flow in (m2/s)"] / exact, -row["low flow in (m2/s)"] / exact
+
+    assert flows() == pytest.approx((1.0, 1.0), abs=0.0125)
+    # the check that fails: corners behind the lid that push, as walls do before dry ground
+    monkeypatch.setattr(pores, "continue_in_corners", lambda *given: None)
+    assert flows()[1] > 1.03
 
 
 @pytest.mark.parametrize("sides", [("left", "right"), ("floor", "lid")])
