@@ -185,7 +185,7 @@ def test_the_area_under_a_quarter_circle_is_good_to_the_last_digits(r):
     a = r * np.concatenate((np.linspace(0, 1, 2001), 1 - np.logspace(-15, -1, 200), np.logspace(-15, -1, 200)))
     h = np.sqrt((r - a) * (r + a))
     exact = 0.5 * (a * h + r * r * np.arctan2(a, h))
-    found = np.array([coverage.quarter_area(x, r) for x in a])
+    found = np.array([coverage.quarter_areas(x, x, r)[0] for x in a])
     # the angle, at most pi/2, to 4 eps, and five roundings of areas up to r²
     np.testing.assert_allclose(found, exact, rtol=0, atol=8 * EPS * r * r)
 
@@ -194,11 +194,12 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     discs = [(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)]
     kinds = ("periodic", "wall")
     compiled = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
-    of_lines = "small_angle", "quarter_area", "line_at", "mark_lines", "across"
+    of_lines = "next_terms", "small_angles", "quarter_areas", "lines_at", "mark_lines", "across"
     for name in (
         *of_lines,
         "corner_area",
         "strip_area",
+        "strips_at",
         "least_part",
         "full_or_empty",
         "place_corner",
