@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import disjoint, inline, parallel_kernel, prange, thread, unchecked_view
-from porescale.coupling.coverage.rows import BLOCK, rasterize_row
-from porescale.coupling.load import accumulate_load_row
+from porescale.coupling.coverage.rows import BLOCK, rasterize_band
+from porescale.coupling.load import accumulate_load_band
 from porescale.coupling.solid.law import (
     SolidCell,
     collide_with_solid,
@@ -42,15 +42,17 @@ STRETCH = 64
 
 
 class RowWork(NamedTuple):
-    """What rows are worked out with.
+    """What bands of rows are worked out with.
 
-    row_load (n, largest height, 5 or 7): load.py;  for each thread scratch (threads, 3 or
-    4, BLOCK + nx + BLOCK): zero before and after;  weights (threads, 4, AT_ONCE or less): scratch.
+    row_load (n, largest height, 5 or 7): load.py;  for each thread scratch (threads, 3 or 4, height of a band times
+    (BLOCK + nx + BLOCK)): zero before and after;  weights (threads, 4, AT_ONCE or less), extent (threads, height of a
+    band, 2): scratch.
     """
 
     row_load: NDArray[np.float64]
     scratch: NDArray[np.floating]
     weights: NDArray[np.floating]
+    extent: NDArray[np.int64]
 
 
 @inline
@@ -176,58 +178,62 @@ def stretches(left, right, n):
 
 
 @inline
-def saturated_row(y, planes, rows, patches, motion, periodic_x, row_load, scratch, weights, laws):
-    """Row ``y`` of the lattice: rasterize its bodies, collide, take their loads.  Plain fluid outside of what the
-    bodies cover.
+def collide_partly(planes, extent, at, scratch, weights, laws):
+    """Collide a row of the lattice of which bodies may cover the columns of ``extent`` (2,).  Plain fluid outside.
 
-    planes: the row's nine slots;  row_load, scratch, weights: one thread's of ``RowWork``;  laws: of weight,
-    solid and fluid operator.  Overwrites the slots and row_load of the bodies in the row.
+    planes: the row's nine slots;  scratch: of ``rasterize_band``, where the row begins at ``at``, overwritten with what
+    loads are made of, and with 0 beyond the box;  weights: one thread's of ``RowWork``;  laws: of weight, solid and
+    fluid operator.  Overwrites the slots, and extent with the saturated columns.
     """
     law = laws[2]
     n = planes[0].shape[0]
-    left = n
-    right = n
-    if rows.start[y] < rows.start[y + 1]:
-        left, right = rasterize_row(y, rows, patches, motion, periodic_x, scratch)
-    left, right = stretches(left, right, n)
+    left, right = stretches(extent[0], extent[1], n)
+    extent[0] = left
+    extent[1] = right
     for end_of_row in range(2):  # one loop for both ends: compiled once
         first, last = (right, n) if end_of_row else (0, left)
         collide_row(planes, first, last, law)
     if left < right:
         s, sx, sy = (
-            unchecked_view(scratch[0], BLOCK, n),
-            unchecked_view(scratch[1], BLOCK, n),
-            unchecked_view(scratch[2], BLOCK, n),
+            unchecked_view(scratch[0], at, n),
+            unchecked_view(scratch[1], at, n),
+            unchecked_view(scratch[2], at, n),
         )
-        softness = unchecked_view(scratch[scratch.shape[0] - 1], BLOCK, n)
+        softness = unchecked_view(scratch[scratch.shape[0] - 1], at, n)
         for first in range(left, right, AT_ONCE):
             last = min(first + AT_ONCE, right)
             collide_saturated_row(planes, (s, sx, sy), softness, weights, first, last, laws)
         for k in range(scratch.shape[0]):
-            scratch[k, :BLOCK] = 0
-            scratch[k, BLOCK + n :] = 0
-        accumulate_load_row(y, rows, patches, motion, periodic_x, scratch, row_load)
-        for k in range(scratch.shape[0]):
-            scratch[k, BLOCK + left : BLOCK + right] = 0
+            scratch[k, at - BLOCK : at] = 0
+            scratch[k, at + n : at + n + BLOCK] = 0
 
 
 @parallel_kernel
-def sweep(f, parity, band_order, height, rows, patches, motion, periodic_x, work, weighting, solid, law):
+def sweep(f, parity, band_order, bands, patches, motion, periodic_x, work, weighting, solid, law):
     """Step of ``parity`` with bodies; overwrites padded populations f and work.row_load.  Before an odd one: fill
     the halo.
 
-    Bands of ``height`` rows are spread over the threads in ``band_order``;  motion: ``Motion`` of all bodies;
-    work: ``RowWork`` of all threads;  weighting, solid, law: of weight, solid and fluid operator.
+    Bands are spread over the threads in ``band_order``: bodies are rasterized, rows collided, loads taken;  motion:
+    ``Motion`` of all bodies;  work: ``RowWork`` of all threads;  weighting, solid, law: of weight, solid and fluid
+    operator.
     """
     # By name: what a loop over threads writes into a member of a tuple is lost.
-    row_load, scratch, weights = work.row_load, work.scratch, work.weights
-    n = scratch.shape[2] - 2 * BLOCK
+    row_load, scratch, weights, extent = work.row_load, work.scratch, work.weights, work.extent
+    wide = scratch.shape[2] // bands.height
+    n = wide - 2 * BLOCK
     for turn in prange(band_order.shape[0]):
         band = band_order[turn]
         mine = thread()
-        for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
-            planes = slots(f, n, y + 1, parity)
-            saturated_row(
-                y, planes, rows, patches, motion, periodic_x, row_load, scratch[mine], weights[mine],
-                (weighting, solid, row_law(y, law)),
+        bottom = band * bands.height
+        top = min(bottom + bands.height, bands.rows)
+        rasterize_band(band, bands, patches, motion, periodic_x, scratch[mine], extent[mine])
+        for y in range(bottom, top):
+            collide_partly(
+                slots(f, n, y + 1, parity), extent[mine, y - bottom], (y - bottom) * wide + BLOCK, scratch[mine],
+                weights[mine], (weighting, solid, row_law(y, law)),
             )  # fmt: skip
+        accumulate_load_band(band, bands, patches, motion, periodic_x, scratch[mine], row_load)
+        for i in range(top - bottom):
+            left, right = i * wide + BLOCK + extent[mine, i, 0], i * wide + BLOCK + extent[mine, i, 1]
+            for k in range(scratch.shape[1]):
+                scratch[mine, k, left:right] = 0
