@@ -12,6 +12,7 @@ from porescale.common.compiled.simd import choose, fma, load_eight, ramp_eight, 
 from porescale.coupling.coverage.rows import (
     AHEAD,
     BLOCK,
+    LINE,
     SERIAL_BELOW,
     blocks_inside,
     lines_inside,
@@ -46,25 +47,25 @@ def rim_of_cell(e, rho, slip):
 
 
 @inline
-def accumulate_load_band(band, bands, patches, motion, periodic_x, scratch, row_load):
+def accumulate_load_band(band, bands, patches, motion, periodic_x, sums, row_load, soft):
     """Load of the collided rows of a band on the bodies in it.
 
-    scratch (3, height of a band times (BLOCK + nx + BLOCK)): rho, then j along x and y, times B/sum e, as
-    collide_saturated_row leaves them, and zero beyond the box;  the rest as in ``rasterize_band``.  Overwrites row_load
-    (n, largest height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of
-    inertia; where rims are soft, with a fourth part of scratch, the slip |u - v|, also the sums of e (1 - e) times slip
-    and of e (1 - e) (row_load 7).
+    sums: four views (height of a band times (BLOCK + nx + BLOCK),) with rho, then j along x and y, times B/sum e, as
+    collide_saturated_row leaves them, and zero beyond the box, the fourth where rims are ``soft``, the slip |u - v|;
+    the rest as in ``rasterize_band``.  Overwrites row_load (n, largest height, 5) for these bodies and rows: force
+    along x and y, torque, inside mass and its moment of inertia; where rims are soft also the sums of e (1 - e) times
+    slip and of e (1 - e) (row_load 7).
     """
-    wide = scratch.shape[1] // bands.height
+    density, jx, jy, slip = sums
+    wide = density.shape[0] // bands.height
     nx = wide - 2 * BLOCK
-    density, jx, jy, slip = scratch[0], scratch[1], scratch[2], scratch[scratch.shape[0] - 1]
-    soft, fraction = scratch.shape[0] > 3, patches.fraction
+    fraction = patches.fraction
     for k in range(bands.start[band], bands.start[band + 1]):
         if k + AHEAD < bands.start[band + 1]:
-            m = bands.body[k + AHEAD]
-            first, last = lines_inside(k + AHEAD, band, bands, patches)
-            for j in range(first, last):
-                prefetch(row_load, (m * row_load.shape[1] + j) * row_load.shape[2])
+            j = max(band * bands.height - bands.low[k + AHEAD], 0)
+            soon = (bands.body[k + AHEAD] * row_load.shape[1] + j) * row_load.shape[2]
+            for b in range(0, 3 * LINE, LINE):
+                prefetch(row_load, soon + b)
         n = bands.body[k]
         base, stride = patches.corner[n, 0], patches.stride[n]
         body = motion_of_body(n, patches, motion)

@@ -56,7 +56,7 @@ def row_work(nx: int, height: int, row_load: NDArray[np.float64], dtype: np.dtyp
     threads = most_threads()
     scratch = aligned_zeros((threads, 4 if soft else 3, height * (BLOCK + nx + BLOCK)), dtype)
     weights = aligned_zeros((threads, 4, min(nx, AT_ONCE)), dtype)
-    return RowWork(row_load, scratch, weights, np.zeros((threads, height, 2), np.int64))
+    return RowWork(row_load, scratch, weights, np.zeros((threads, 2 * height), np.int64))
 
 
 class SaturatedCells:

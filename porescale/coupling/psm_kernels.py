@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import disjoint, inline, parallel_kernel, prange, thread, unchecked_view
-from porescale.coupling.coverage.rows import BLOCK, rasterize_band
+from porescale.coupling.coverage.rows import BLOCK, rasterize_band, views_of
 from porescale.coupling.load import accumulate_load_band
 from porescale.coupling.solid.law import (
     SolidCell,
@@ -45,8 +45,8 @@ class RowWork(NamedTuple):
     """What bands of rows are worked out with.
 
     row_load (n, largest height, 5 or 7): load.py;  for each thread scratch (threads, 3 or 4, height of a band times
-    (BLOCK + nx + BLOCK)): zero before and after;  weights (threads, 4, AT_ONCE or less), extent (threads, height of a
-    band, 2): scratch.
+    (BLOCK + nx + BLOCK)): zero before and after;  weights (threads, 4, AT_ONCE or less), extent (threads, twice the
+    height of a band): scratch.
     """
 
     row_load: NDArray[np.float64]
@@ -178,34 +178,41 @@ def stretches(left, right, n):
 
 
 @inline
-def collide_partly(planes, extent, at, scratch, weights, laws):
-    """Collide a row of the lattice of which bodies may cover the columns of ``extent`` (2,).  Plain fluid outside.
+def collide_partly(planes, i, extent, sums, soft, weights, laws):
+    """Collide row ``i`` of a band, of which bodies may cover columns extent[2 i] to extent[2 i + 1] - 1.  Plain fluid
+    outside.
 
-    planes: the row's nine slots;  scratch: of ``rasterize_band``, where the row begins at ``at``, overwritten with what
-    loads are made of, and with 0 beyond the box;  weights: one thread's of ``RowWork``;  laws: of weight, solid and
-    fluid operator.  Overwrites the slots, and extent with the saturated columns.
+    planes: the row's nine slots;  sums: of ``rasterize_band``, overwritten in the row with what loads are made of, and
+    with 0 beyond the box;  soft: whether rims are;  weights: four views, scratch;  laws: of weight, solid and fluid
+    operator.  Overwrites the slots, and in extent the saturated columns.
     """
     law = laws[2]
     n = planes[0].shape[0]
-    left, right = stretches(extent[0], extent[1], n)
-    extent[0] = left
-    extent[1] = right
+    at = i * (n + 2 * BLOCK) + BLOCK
+    left, right = stretches(extent[2 * i], extent[2 * i + 1], n)
+    extent[2 * i] = left
+    extent[2 * i + 1] = right
     for end_of_row in range(2):  # one loop for both ends: compiled once
         first, last = (right, n) if end_of_row else (0, left)
         collide_row(planes, first, last, law)
     if left < right:
-        s, sx, sy = (
-            unchecked_view(scratch[0], at, n),
-            unchecked_view(scratch[1], at, n),
-            unchecked_view(scratch[2], at, n),
-        )
-        softness = unchecked_view(scratch[scratch.shape[0] - 1], at, n)
+        s, sx, sy = unchecked_view(sums[0], at, n), unchecked_view(sums[1], at, n), unchecked_view(sums[2], at, n)
+        softness = unchecked_view(sums[3], at, n)
         for first in range(left, right, AT_ONCE):
             last = min(first + AT_ONCE, right)
             collide_saturated_row(planes, (s, sx, sy), softness, weights, first, last, laws)
-        for k in range(scratch.shape[0]):
-            scratch[k, at - BLOCK : at] = 0
-            scratch[k, at + n : at + n + BLOCK] = 0
+        clear(sums, soft, at - BLOCK, at)
+        clear(sums, soft, at + n, at + n + BLOCK)
+
+
+@inline
+def clear(sums, soft, first, last):
+    """Set entries ``first`` to ``last`` - 1 of the sums to 0, of the fourth where rims are soft."""
+    sums[0][first:last] = 0
+    sums[1][first:last] = 0
+    sums[2][first:last] = 0
+    if soft:
+        sums[3][first:last] = 0
 
 
 @parallel_kernel
@@ -219,21 +226,19 @@ def sweep(f, parity, band_order, bands, patches, motion, periodic_x, work, weigh
     """
     # By name: what a loop over threads writes into a member of a tuple is lost.
     row_load, scratch, weights, extent = work.row_load, work.scratch, work.weights, work.extent
-    wide = scratch.shape[2] // bands.height
-    n = wide - 2 * BLOCK
+    n, soft = scratch.shape[2] // bands.height - 2 * BLOCK, scratch.shape[1] > 3
     for turn in prange(band_order.shape[0]):
-        band = band_order[turn]
-        mine = thread()
+        band, mine = band_order[turn], thread()
         bottom = band * bands.height
-        top = min(bottom + bands.height, bands.rows)
-        rasterize_band(band, bands, patches, motion, periodic_x, scratch[mine], extent[mine])
-        for y in range(bottom, top):
-            collide_partly(
-                slots(f, n, y + 1, parity), extent[mine, y - bottom], (y - bottom) * wide + BLOCK, scratch[mine],
-                weights[mine], (weighting, solid, row_law(y, law)),
-            )  # fmt: skip
-        accumulate_load_band(band, bands, patches, motion, periodic_x, scratch[mine], row_load)
-        for i in range(top - bottom):
-            left, right = i * wide + BLOCK + extent[mine, i, 0], i * wide + BLOCK + extent[mine, i, 1]
-            for k in range(scratch.shape[1]):
-                scratch[mine, k, left:right] = 0
+        sums, shares = views_of(scratch, mine), views_of(weights, mine)
+        reach = unchecked_view(extent[mine], 0, extent.shape[1])
+        rasterize_band(band, bands, patches, motion, periodic_x, sums, reach, soft)
+        rows = min(bands.height, bands.rows - bottom)
+        for i in range(rows):
+            y = bottom + i
+            here = weighting, solid, row_law(y, law)
+            collide_partly(slots(f, n, y + 1, parity), i, reach, sums, soft, shares, here)
+        accumulate_load_band(band, bands, patches, motion, periodic_x, sums, row_load, soft)
+        for i in range(rows):
+            at = i * (n + 2 * BLOCK) + BLOCK
+            clear(sums, soft, at + reach[2 * i], at + reach[2 * i + 1])

@@ -217,7 +217,7 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
         "cover_part",
     ):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
-    of_bands = "bands_between", "list_part", "lines_inside", "blocks_inside", "rasterize_band"
+    of_bands = "bands_between", "list_part", "lines_inside", "blocks_inside", "views_of", "rasterize_band"
     for name in (*of_bands, "motion_of_body", "motion_of_row", "motion_of_block", "solid_velocity"):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
     for module, name in ((coverage, "cover"), (coverage_rows, "list_bands"), (coverage_rows, "rasterize")):
@@ -247,7 +247,8 @@ def test_loads_are_the_same_uncompiled(monkeypatch):
                 monkeypatch.setattr(load, name, getattr(load, name).py_func)
             monkeypatch.setattr(load, "solid_velocity", coverage_rows.solid_velocity.py_func)
         row_load, loads, inside = np.full_like(wet._work.row_load, np.nan), np.zeros((2, 3)), np.zeros((2, 2))
-        take(0, bands, patches, motion, True, scratch.reshape(3, -1), row_load)
+        sums = (*scratch.reshape(3, -1), scratch[2].ravel())
+        take(0, bands, patches, motion, True, sums, row_load, False)
         add(patches.corner, patches.height, 5, False, row_load, loads, inside)
         made.append(np.column_stack((loads, inside)))
     assert np.all(np.isfinite(made[0]))

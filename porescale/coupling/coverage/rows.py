@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch, thread
+from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch, thread, unchecked_view
 from porescale.common.compiled.simd import EIGHT, fma, load_eight, ramp_eight, store_eight
 from porescale.common.core.aligned import aligned_zeros
 
@@ -22,6 +22,8 @@ BLOCK = EIGHT
 AHEAD = 4
 """Entries of a band ahead of which patches are fetched: bodies lie apart in memory, and waiting for each would cost
 more than all that is done with it."""
+LINE = 16
+"""Numbers from one fetch to the next: a line of the cache in single precision, a pair of lines in double."""
 LISTING = 4
 """Parts of the lattice whose bands are listed side by side; any number gives the same lists."""
 SERIAL_BELOW = 8192
@@ -251,29 +253,44 @@ def solid_velocity(e, i, block):
 
 
 @inline
-def rasterize_band(band, bands, patches, motion, periodic_x, scratch, extent):
+def views_of(scratch, mine):
+    """Four views (n,) of what thread ``mine`` has of scratch (threads, 3 or 4, n), the last one twice of three.
+
+    They own nothing: to count references takes as long as a row of a few cells, longer where threads share the count.
+    """
+    n, last = scratch.shape[2], scratch.shape[1] - 1
+    return (
+        unchecked_view(scratch[mine, 0], 0, n),
+        unchecked_view(scratch[mine, 1], 0, n),
+        unchecked_view(scratch[mine, 2], 0, n),
+        unchecked_view(scratch[mine, last], 0, n),
+    )
+
+
+@inline
+def rasterize_band(band, bands, patches, motion, periodic_x, sums, extent, soft):
     """Add up the solid fractions of the rows of a band, and fractions times solid velocity at the cells' centres.
 
     The velocity in a cell that a body covers by e is its own and e times the half-step correction.
 
-    motion: ``Motion``.  Adds to scratch (3 or 4, height of a band times (BLOCK + nx + BLOCK)), row by row, whose fourth
-    part, where rims are soft, gets fractions times theta; overwrites extent (height, 2): the first column of each row
-    that may be covered and one past the last.  All loops in one function: numba counts references to arrays that a loop
-    passes on to another with loops, which takes as long as a row of a few cells.
+    motion: ``Motion``.  Adds to sums, four views (height of a band times (BLOCK + nx + BLOCK),), row by row, of which
+    the fourth, where rims are ``soft``, gets fractions times theta, and is not touched elsewhere;  overwrites extent (2
+    height,): the first column of each row that may be covered and one past the last.  All loops in one function, see
+    ``views_of``: references to arrays that a loop passes on to another one are counted.
     """
-    wide = scratch.shape[1] // bands.height
+    s, sx, sy, st = sums
+    wide = s.shape[0] // bands.height
     nx = wide - 2 * BLOCK
-    s, sx, sy, st = scratch[0], scratch[1], scratch[2], scratch[scratch.shape[0] - 1]
-    soft, fraction = scratch.shape[0] > 3, patches.fraction
+    fraction = patches.fraction
     for i in range(bands.height):
-        extent[i, 0] = nx
-        extent[i, 1] = 0
+        extent[2 * i] = nx
+        extent[2 * i + 1] = 0
     for k in range(bands.start[band], bands.start[band + 1]):
         if k + AHEAD < bands.start[band + 1]:
             m = bands.body[k + AHEAD]
-            first, last = lines_inside(k + AHEAD, band, bands, patches)
-            for j in range(first, last):
-                prefetch(patches.fraction, patches.start[m] + j * patches.stride[m])
+            soon = patches.start[m] + max(band * bands.height - bands.low[k + AHEAD], 0) * patches.stride[m]
+            for b in range(0, 3 * LINE, LINE):  # those of a small body; what follows in memory comes by itself
+                prefetch(fraction, soon + b)
         n = bands.body[k]
         base, stride = patches.corner[n, 0], patches.stride[n]
         body = motion_of_body(n, patches, motion)
@@ -301,8 +318,8 @@ def rasterize_band(band, bands, patches, motion, periodic_x, scratch, extent):
                 x0 += wide
             if first < last:
                 for i in range(above + begin, above + end):
-                    extent[i, 0] = min(extent[i, 0], max(base + first, 0))
-                    extent[i, 1] = max(extent[i, 1], min(base + last, nx))
+                    extent[2 * i] = min(extent[2 * i], max(base + first, 0))
+                    extent[2 * i + 1] = max(extent[2 * i + 1], min(base + last, nx))
             if not periodic_x:
                 break
             base -= nx
@@ -312,14 +329,15 @@ def rasterize_band(band, bands, patches, motion, periodic_x, scratch, extent):
 def rasterize(bands, patches, motion, periodic_x, scratch, extent, out):
     """All bands at once, for output: overwrites out (3, ny, nx) with the sums of ``rasterize_band``.
 
-    scratch (threads, 3 or 4, height times (BLOCK + nx + BLOCK)): zero before and after;  extent (threads, height, 2):
+    scratch (threads, 3 or 4, height times (BLOCK + nx + BLOCK)): zero before and after;  extent (threads, 2 height):
     scratch.
     """
     nx = out.shape[2]
     wide = nx + 2 * BLOCK
     for band in prange(bands.start.shape[0] - 1):
         mine = thread()
-        rasterize_band(band, bands, patches, motion, periodic_x, scratch[mine], extent[mine])
+        reach = unchecked_view(extent[mine], 0, extent.shape[1])
+        rasterize_band(band, bands, patches, motion, periodic_x, views_of(scratch, mine), reach, scratch.shape[1] > 3)
         first = band * bands.height
         for i in range(min(bands.height, bands.rows - first)):
             for k in range(3):  # element by element: assigned as slices it takes ten times as long to compile
