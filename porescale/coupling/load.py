@@ -12,9 +12,12 @@ from porescale.common.compiled.simd import choose, fma, load_eight, ramp_eight, 
 from porescale.coupling.coverage.rows import (
     AHEAD,
     BLOCK,
+    LINE,
     SERIAL_BELOW,
     blocks_inside,
+    lines_inside,
     motion_of_block,
+    motion_of_body,
     motion_of_row,
     solid_velocity,
 )
@@ -44,62 +47,74 @@ def rim_of_cell(e, rho, slip):
 
 
 @inline
-def accumulate_load_row(y, rows, patches, motion, periodic_x, scratch, row_load):
-    """Load of one collided row on the bodies in it.
+def accumulate_load_band(band, bands, patches, motion, periodic_x, sums, row_load, soft):
+    """Load of the collided rows of a band on the bodies in it.
 
-    scratch (3, BLOCK + nx + BLOCK): rho, then j along x and y, times B/sum e, as collide_saturated_row leaves them,
-    and zero beyond the box;  the rest as in ``rasterize_row``.  Overwrites row_load (n, largest height, 5) for these
-    bodies and rows: force along x and y, torque, inside mass and its moment of inertia; where rims are soft, with a
-    fourth row of scratch, the slip |u - v|, also the sums of e (1 - e) times slip and of e (1 - e) (row_load 7).
+    sums: four views (height of a band times (BLOCK + nx + BLOCK),) with rho, then j along x and y, times B/sum e, as
+    collide_saturated_row leaves them, and zero beyond the box, the fourth where rims are ``soft``, the slip |u - v|;
+    the rest as in ``rasterize_band``.  Overwrites row_load (n, largest height, 5) for these bodies and rows: force
+    along x and y, torque, inside mass and its moment of inertia; where rims are soft also the sums of e (1 - e) times
+    slip and of e (1 - e) (row_load 7).
     """
-    nx = scratch.shape[1] - 2 * BLOCK
-    density, jx, jy = scratch[0], scratch[1], scratch[2]
-    for k in range(rows.start[y], rows.start[y + 1]):
-        if k + AHEAD < rows.body.shape[0]:
-            prefetch(row_load, (rows.body[k + AHEAD] * row_load.shape[1] + rows.line[k + AHEAD]) * row_load.shape[2])
-        n = rows.body[k]
-        j = rows.line[k]
-        stride = patches.stride[n]
-        at = patches.start[n] + j * stride
-        base = patches.corner[n, 0]
-        row = motion_of_row(n, j, patches, motion)
-        fx = 0.0
-        fy = 0.0
-        tz = 0.0
-        mass = 0.0
-        inertia = 0.0
-        slipping = 0.0
-        rim = 0.0
-        soft = scratch.shape[0] > 3
+    density, jx, jy, slip = sums
+    wide = density.shape[0] // bands.height
+    nx = wide - 2 * BLOCK
+    fraction = patches.fraction
+    for k in range(bands.start[band], bands.start[band + 1]):
+        if k + AHEAD < bands.start[band + 1]:
+            j = max(band * bands.height - bands.low[k + AHEAD], 0)
+            soon = (bands.body[k + AHEAD] * row_load.shape[1] + j) * row_load.shape[2]
+            for b in range(0, 3 * LINE, LINE):
+                prefetch(row_load, soon + b)
+        n = bands.body[k]
+        base, stride = patches.corner[n, 0], patches.stride[n]
+        body = motion_of_body(n, patches, motion)
+        above = bands.low[k] - band * bands.height
         if periodic_x:
             base %= nx
+        begin, end = lines_inside(k, band, bands, patches)
+        again = False
         while base + stride > 0:  # once, or again for what lies beyond a periodic side
             first, last = blocks_inside(base, stride, nx)
-            for b in range(first, last, BLOCK):
-                block = motion_of_block(n, b, row, patches, motion)
-                e, i, x = load_eight(patches.fraction, at + b), ramp_eight(density), base + b + BLOCK
-                rho = load_eight(density, x)
-                gx, gy, turn, m, inside = load_of_cell(e, (rho, load_eight(jx, x), load_eight(jy, x)), i, block)
-                fx += reduce_add(gx)
-                fy += reduce_add(gy)
-                tz += reduce_add(turn)
-                mass += reduce_add(m)
-                inertia += reduce_add(inside)
+            at = patches.start[n] + begin * stride
+            x0 = (above + begin) * wide + BLOCK + base
+            for j in range(begin, end):
+                row = motion_of_row(j, body)
+                fx = row_load[n, j, 0] if again else 0.0
+                fy = row_load[n, j, 1] if again else 0.0
+                tz = row_load[n, j, 2] if again else 0.0
+                mass = row_load[n, j, 3] if again else 0.0
+                inertia = row_load[n, j, 4] if again else 0.0
+                slipping = row_load[n, j, 5] if again and soft else 0.0
+                rim = row_load[n, j, 6] if again and soft else 0.0
+                for b in range(first, last, BLOCK):
+                    block = motion_of_block(b, row, density)
+                    e, i, x = load_eight(fraction, at + b), ramp_eight(density), x0 + b
+                    rho = load_eight(density, x)
+                    gx, gy, turn, m, inside = load_of_cell(e, (rho, load_eight(jx, x), load_eight(jy, x)), i, block)
+                    fx += reduce_add(gx)
+                    fy += reduce_add(gy)
+                    tz += reduce_add(turn)
+                    mass += reduce_add(m)
+                    inertia += reduce_add(inside)
+                    if soft:
+                        slipped, edge = rim_of_cell(e, rho, load_eight(slip, x))
+                        slipping += reduce_add(slipped)
+                        rim += reduce_add(edge)
+                row_load[n, j, 0] = fx
+                row_load[n, j, 1] = fy
+                row_load[n, j, 2] = tz
+                row_load[n, j, 3] = mass
+                row_load[n, j, 4] = inertia
                 if soft:
-                    slipped, edge = rim_of_cell(e, rho, load_eight(scratch[3], x))
-                    slipping += reduce_add(slipped)
-                    rim += reduce_add(edge)
+                    row_load[n, j, 5] = slipping
+                    row_load[n, j, 6] = rim
+                at += stride
+                x0 += wide
             if not periodic_x:
                 break
             base -= nx
-        row_load[n, j, 0] = fx
-        row_load[n, j, 1] = fy
-        row_load[n, j, 2] = tz
-        row_load[n, j, 3] = mass
-        row_load[n, j, 4] = inertia
-        if soft:
-            row_load[n, j, 5] = slipping
-            row_load[n, j, 6] = rim
+            again = True
 
 
 @inline
@@ -151,7 +166,7 @@ def sum_rim_slip_of(n, corner, height, box, row_load, rim):
 
 @kernel
 def sum_rim_slip(corner, height, ny, periodic_y, row_load, rim):
-    """Sum of the rows of the first bodies where rims are soft; overwrites rim (n, 2), see ``accumulate_load_row``."""
+    """Sum of the rows of the first bodies where rims are soft; overwrites rim (n, 2), see ``accumulate_load_band``."""
     for n in range(rim.shape[0]):
         sum_rim_slip_of(n, corner, height, (ny, periodic_y), row_load, rim)
 

@@ -26,7 +26,7 @@ from porescale.coupling.coverage.overlap import subtract_overlap
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.coverage.ring import Ring
-from porescale.coupling.coverage.rows import BLOCK, Motion, list_rows, make_patches, make_rows, rasterize
+from porescale.coupling.coverage.rows import BLOCK, Motion, list_bands, make_bands, make_patches, rasterize
 from porescale.coupling.coverage.shape import Shape
 from porescale.coupling.coverage.soft_rim import MARGIN, SoftRim
 from porescale.coupling.load import add_rows, half_step_correction
@@ -43,7 +43,7 @@ from porescale.lbm.moments import moment_fields
 LOW_PASS = 0.1
 """Share of a step's load in the one that the half-step correction is made from; 1 lets light discs run away."""
 BAND_HEIGHT = 8
-"""Rows that one thread does at a time; any value gives the same bits."""
+"""Rows that one thread does at a time, with the bodies in them; any value gives the same bits."""
 BANDS_READ = 8
 """Bands that `SaturatedCells.flow` collides and takes back at a time."""
 SPREAD = 0.6180339887498949
@@ -51,12 +51,12 @@ SPREAD = 0.6180339887498949
 though the grains lie at the bottom."""
 
 
-def row_work(nx: int, row_load: NDArray[np.float64], dtype: np.dtype[Any], *, soft: bool) -> RowWork:
-    """Scratch of all threads for rows of nx cells, and the given loads of rows."""
+def row_work(nx: int, height: int, row_load: NDArray[np.float64], dtype: np.dtype[Any], *, soft: bool) -> RowWork:
+    """Scratch of all threads for bands of ``height`` rows of nx cells, and the given loads of rows."""
     threads = most_threads()
-    scratch = aligned_zeros((threads, 4 if soft else 3, BLOCK + nx + BLOCK), dtype)
+    scratch = aligned_zeros((threads, 4 if soft else 3, height * (BLOCK + nx + BLOCK)), dtype)
     weights = aligned_zeros((threads, 4, min(nx, AT_ONCE)), dtype)
-    return RowWork(row_load, scratch, weights)
+    return RowWork(row_load, scratch, weights, np.zeros((threads, 2 * height), np.int64))
 
 
 class SaturatedCells:
@@ -109,12 +109,12 @@ class SaturatedCells:
         high, wide = self._sizes(fluid, shift, [*rectangles, *rings], len(rectangles), MARGIN * soft_rim)
         discs, count = len(self.radius), len(high)
         self._patches = make_patches(wide, high, dtype)
-        self._rows = make_rows(self._patches, fluid.ny)
+        self._bands = make_bands(self._patches, fluid.ny, BAND_HEIGHT)
         widest = int(self._patches.stride[:discs].max(initial=BLOCK))
         self._lines = aligned_zeros((CHUNKS, SCRATCH, widest + BLOCK), np.float64)
         row_load = np.zeros((count, int(high.max(initial=0)), 7 if soft_rim else 5))
-        self._work = row_work(fluid.nx, row_load, dtype, soft=soft_rim)
-        bands = -(-fluid.ny // BAND_HEIGHT)
+        self._work = row_work(fluid.nx, BAND_HEIGHT, row_load, dtype, soft=soft_rim)
+        bands = len(self._bands.start) - 1
         self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
         self.pairs = np.zeros((0, 2), np.int64)
         self._placed = np.full((discs, 2), np.nan)  # centres for which the patches are filled
@@ -253,7 +253,7 @@ class SaturatedCells:
         return self.bodies.restore_mass(fluid, self._patches) if self.bodies else 0.0
 
     def _place(self, centre: Reals, velocity: Reals, spin: Reals) -> Motion:
-        """Fill the bodies' patches, list the covered rows, and return how they all move.
+        """Fill the bodies' patches, list them by bands, and return how they all move.
 
         Where there are discs only and none has moved since, all of that is there already.
         """
@@ -279,7 +279,7 @@ class SaturatedCells:
             self.polygons.cover(self._patches, len(self.radius))
         if self.bodies:
             self.bodies.place(self._patches)
-        list_rows(self._patches, self.periodic_y, self._rows)
+        list_bands(self._patches, self.periodic_y, self._bands)
         return Motion(*self._gathered(centre, velocity, spin), self._shift, self._theta)
 
     def _gathered(self, centre: Reals, velocity: Reals, spin: Reals) -> tuple[Reals, Reals, Reals]:
@@ -306,7 +306,7 @@ class SaturatedCells:
             motion = self._place(centre, velocity, spin)
         self._placed[:] = np.nan  # the patches are none that a step may use again
         work = self._work
-        rasterize(self._rows, self._patches, motion, self.periodic_x, work.scratch, self.covered)
+        rasterize(self._bands, self._patches, motion, self.periodic_x, work.scratch, work.extent, self.covered)
 
     def weights(self) -> Reals:
         """Weight B of every cell (ny, nx), right after ``cover``."""
@@ -320,8 +320,7 @@ class SaturatedCells:
         if self.bodies:
             self.bodies.before(fluid, self._patches, self._shift, self._slow_load)
         fluid.advance(
-            sweep, self._band_order, BAND_HEIGHT, self._rows, self._patches, motion, self.periodic_x, self._work,
-            *self._laws,
+            sweep, self._band_order, self._bands, self._patches, motion, self.periodic_x, self._work, *self._laws,
         )  # fmt: skip
         self._sum_loads(fluid)
         self._respond()
@@ -361,14 +360,15 @@ class SaturatedCells:
         parity, ny, nx = fluid.step % 2, fluid.ny, fluid.nx
         with fluid.readable():
             rho, jx, jy = moment_fields(f, nx, parity)
-            for first in range(0, ny, BANDS_READ * BAND_HEIGHT):
-                last = min(first + BANDS_READ * BAND_HEIGHT, ny)
-                bands = np.arange(first // BAND_HEIGHT, -(-last // BAND_HEIGHT))
+            height = self._bands.height
+            for first in range(0, ny, BANDS_READ * height):
+                last = min(first + BANDS_READ * height, ny)
+                order = np.arange(first // height, -(-last // height))
                 here = f[:, first : last + 2]
                 kept = here.copy()
                 try:
-                    sweep(f, parity, bands, BAND_HEIGHT, self._rows, self._patches, motion, self.periodic_x,
-                          self._work, *self._laws, law)  # fmt: skip
+                    sweep(f, parity, order, self._bands, self._patches, motion, self.periodic_x, self._work,
+                          *self._laws, law)  # fmt: skip
                     _, kx, ky = moment_fields(np.ascontiguousarray(here), nx, parity)  # slots of opposite populations
                 finally:
                     here[...] = kept

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import disjoint, inline, parallel_kernel, prange, thread, unchecked_view
-from porescale.coupling.coverage.rows import BLOCK, rasterize_row
-from porescale.coupling.load import accumulate_load_row
+from porescale.coupling.coverage.rows import BLOCK, rasterize_band, views_of
+from porescale.coupling.load import accumulate_load_band
 from porescale.coupling.solid.law import (
     SolidCell,
     collide_with_solid,
@@ -42,15 +42,17 @@ STRETCH = 64
 
 
 class RowWork(NamedTuple):
-    """What rows are worked out with.
+    """What bands of rows are worked out with.
 
-    row_load (n, largest height, 5 or 7): load.py;  for each thread scratch (threads, 3 or
-    4, BLOCK + nx + BLOCK): zero before and after;  weights (threads, 4, AT_ONCE or less): scratch.
+    row_load (n, largest height, 5 or 7): load.py;  for each thread scratch (threads, 3 or 4, height of a band times
+    (BLOCK + nx + BLOCK)): zero before and after;  weights (threads, 4, AT_ONCE or less), extent (threads, twice the
+    height of a band): scratch.
     """
 
     row_load: NDArray[np.float64]
     scratch: NDArray[np.floating]
     weights: NDArray[np.floating]
+    extent: NDArray[np.int64]
 
 
 @inline
@@ -176,58 +178,67 @@ def stretches(left, right, n):
 
 
 @inline
-def saturated_row(y, planes, rows, patches, motion, periodic_x, row_load, scratch, weights, laws):
-    """Row ``y`` of the lattice: rasterize its bodies, collide, take their loads.  Plain fluid outside of what the
-    bodies cover.
+def collide_partly(planes, i, extent, sums, soft, weights, laws):
+    """Collide row ``i`` of a band, of which bodies may cover columns extent[2 i] to extent[2 i + 1] - 1.  Plain fluid
+    outside.
 
-    planes: the row's nine slots;  row_load, scratch, weights: one thread's of ``RowWork``;  laws: of weight,
-    solid and fluid operator.  Overwrites the slots and row_load of the bodies in the row.
+    planes: the row's nine slots;  sums: of ``rasterize_band``, overwritten in the row with what loads are made of, and
+    with 0 beyond the box;  soft: whether rims are;  weights: four views, scratch;  laws: of weight, solid and fluid
+    operator.  Overwrites the slots, and in extent the saturated columns.
     """
     law = laws[2]
     n = planes[0].shape[0]
-    left = n
-    right = n
-    if rows.start[y] < rows.start[y + 1]:
-        left, right = rasterize_row(y, rows, patches, motion, periodic_x, scratch)
-    left, right = stretches(left, right, n)
+    at = i * (n + 2 * BLOCK) + BLOCK
+    left, right = stretches(extent[2 * i], extent[2 * i + 1], n)
+    extent[2 * i] = left
+    extent[2 * i + 1] = right
     for end_of_row in range(2):  # one loop for both ends: compiled once
         first, last = (right, n) if end_of_row else (0, left)
         collide_row(planes, first, last, law)
     if left < right:
-        s, sx, sy = (
-            unchecked_view(scratch[0], BLOCK, n),
-            unchecked_view(scratch[1], BLOCK, n),
-            unchecked_view(scratch[2], BLOCK, n),
-        )
-        softness = unchecked_view(scratch[scratch.shape[0] - 1], BLOCK, n)
+        s, sx, sy = unchecked_view(sums[0], at, n), unchecked_view(sums[1], at, n), unchecked_view(sums[2], at, n)
+        softness = unchecked_view(sums[3], at, n)
         for first in range(left, right, AT_ONCE):
             last = min(first + AT_ONCE, right)
             collide_saturated_row(planes, (s, sx, sy), softness, weights, first, last, laws)
-        for k in range(scratch.shape[0]):
-            scratch[k, :BLOCK] = 0
-            scratch[k, BLOCK + n :] = 0
-        accumulate_load_row(y, rows, patches, motion, periodic_x, scratch, row_load)
-        for k in range(scratch.shape[0]):
-            scratch[k, BLOCK + left : BLOCK + right] = 0
+        clear(sums, soft, at - BLOCK, at)
+        clear(sums, soft, at + n, at + n + BLOCK)
+
+
+@inline
+def clear(sums, soft, first, last):
+    """Set entries ``first`` to ``last`` - 1 of the sums to 0, of the fourth where rims are soft."""
+    sums[0][first:last] = 0
+    sums[1][first:last] = 0
+    sums[2][first:last] = 0
+    if soft:
+        sums[3][first:last] = 0
 
 
 @parallel_kernel
-def sweep(f, parity, band_order, height, rows, patches, motion, periodic_x, work, weighting, solid, law):
+def sweep(f, parity, band_order, bands, patches, motion, periodic_x, work, weighting, solid, law):
     """Step of ``parity`` with bodies; overwrites padded populations f and work.row_load.  Before an odd one: fill
     the halo.
 
-    Bands of ``height`` rows are spread over the threads in ``band_order``;  motion: ``Motion`` of all bodies;
-    work: ``RowWork`` of all threads;  weighting, solid, law: of weight, solid and fluid operator.
+    Bands are spread over the threads in ``band_order``: bodies are rasterized, rows collided, loads taken;  motion:
+    ``Motion`` of all bodies;  work: ``RowWork`` of all threads;  weighting, solid, law: of weight, solid and fluid
+    operator.
     """
     # By name: what a loop over threads writes into a member of a tuple is lost.
-    row_load, scratch, weights = work.row_load, work.scratch, work.weights
-    n = scratch.shape[2] - 2 * BLOCK
+    row_load, scratch, weights, extent = work.row_load, work.scratch, work.weights, work.extent
+    n, soft = scratch.shape[2] // bands.height - 2 * BLOCK, scratch.shape[1] > 3
     for turn in prange(band_order.shape[0]):
-        band = band_order[turn]
-        mine = thread()
-        for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
-            planes = slots(f, n, y + 1, parity)
-            saturated_row(
-                y, planes, rows, patches, motion, periodic_x, row_load, scratch[mine], weights[mine],
-                (weighting, solid, row_law(y, law)),
-            )  # fmt: skip
+        band, mine = band_order[turn], thread()
+        bottom = band * bands.height
+        sums, shares = views_of(scratch, mine), views_of(weights, mine)
+        reach = unchecked_view(extent[mine], 0, extent.shape[1])
+        rasterize_band(band, bands, patches, motion, periodic_x, sums, reach, soft)
+        rows = min(bands.height, bands.rows - bottom)
+        for i in range(rows):
+            y = bottom + i
+            here = weighting, solid, row_law(y, law)
+            collide_partly(slots(f, n, y + 1, parity), i, reach, sums, soft, shares, here)
+        accumulate_load_band(band, bands, patches, motion, periodic_x, sums, row_load, soft)
+        for i in range(rows):
+            at = i * (n + 2 * BLOCK) + BLOCK
+            clear(sums, soft, at + reach[2 * i], at + reach[2 * i + 1])

@@ -162,22 +162,32 @@ def test_bands_at_the_bottom_are_spread_over_the_threads():
     assert sorted(share) != [0, 0, 0, 16]  # in their natural order one thread would do it all
 
 
-def test_rows_list_discs_in_index_order():
-    wet = covered([(6.3, 8.2, 3.5), (13.1, 8.2, 3.6), (9.7, 15.9, 2.2), (3.0, -0.1, 1.5)], kinds=("wall", "periodic"))
-    start, body, line = wet._rows
-    assert start[-1] == wet._patches.height.sum()
-    for y in range(17):
-        here = body[start[y] : start[y + 1]]
-        assert np.all(np.diff(here) >= 0)
-        assert np.all((wet._patches.corner[here, 1] + line[start[y] : start[y + 1]]) % 17 == y)
+def listed(wet, band):
+    """Rows of the patches that a band lists, body and row, and the rows of the lattice that they lie in."""
+    bands, found = wet._bands, []
+    for k in range(bands.start[band], bands.start[band + 1]):
+        lines = range(*coverage_rows.lines_inside.py_func(k, band, bands, wet._patches))
+        assert lines  # an entry stands for a row or more
+        found += [(int(bands.body[k]), j, int(bands.low[k]) + j) for j in lines]
+    return found
 
 
-def test_rows_beyond_walls_are_not_listed():
-    wet = covered([(6.3, 0.2, 3.5), (13.1, 16.9, 3.6), (5.0, 40.0, 2.0), (5.0, -9.0, 2.0)])
-    start, body, line = wet._rows
-    listed = {(int(body[k]), int(line[k])) for k in range(start[-1])}
-    corner, height = wet._patches.corner, wet._patches.height
-    assert listed == {(n, j) for n in range(4) for j in range(height[n]) if 0 <= corner[n, 1] + j < 17}
+@pytest.mark.parametrize("kind", ["wall", "periodic"])
+def test_bands_list_each_row_of_each_disc_once(kind):
+    discs = [(6.3, 8.2, 3.5), (13.1, 8.2, 3.6), (9.7, 15.9, 2.2), (3.0, -0.1, 1.5), (5.0, 8.3, 8.4)]
+    wet = covered(discs + [(5.0, 40.0, 2.0), (5.0, -9.0, 2.0)] * (kind == "wall"), kinds=("wall", kind))
+    corner, height, rows = wet._patches.corner, wet._patches.height, []
+    for band in range(len(wet._bands.start) - 1):
+        here = listed(wet, band)
+        assert np.all(np.diff([n for n, _, _ in here]) >= 0)  # in index order
+        assert all(band * BAND_HEIGHT <= y < (band + 1) * BAND_HEIGHT for _, _, y in here)
+        rows += here
+    every = [(n, j, corner[n, 1] + j) for n in range(len(height)) for j in range(height[n])]
+    if kind == "periodic":
+        assert sorted(rows) == sorted((n, j, y % 17) for n, j, y in every)
+    else:
+        assert sorted(rows) == sorted((n, j, y) for n, j, y in every if 0 <= y < 17)
+    assert len(set(rows)) == len(rows)
 
 
 @pytest.mark.parametrize("r", [0.3, 6.02, 400.0])
@@ -185,20 +195,21 @@ def test_the_area_under_a_quarter_circle_is_good_to_the_last_digits(r):
     a = r * np.concatenate((np.linspace(0, 1, 2001), 1 - np.logspace(-15, -1, 200), np.logspace(-15, -1, 200)))
     h = np.sqrt((r - a) * (r + a))
     exact = 0.5 * (a * h + r * r * np.arctan2(a, h))
-    found = np.array([coverage.quarter_area(x, r) for x in a])
+    found = np.array([coverage.quarter_areas(*pair, r) for pair in zip(a, a[::-1], strict=True)])
     # the angle, at most pi/2, to 4 eps, and five roundings of areas up to r²
-    np.testing.assert_allclose(found, exact, rtol=0, atol=8 * EPS * r * r)
+    np.testing.assert_allclose(found, np.stack((exact, exact[::-1]), axis=1), rtol=0, atol=8 * EPS * r * r)
 
 
 def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     discs = [(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)]
     kinds = ("periodic", "wall")
     compiled = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
-    of_lines = "small_angle", "quarter_area", "line_at", "mark_lines", "across"
+    of_lines = "next_terms", "small_angles", "quarter_areas", "lines_at", "mark_lines", "across"
     for name in (
         *of_lines,
         "corner_area",
         "strip_area",
+        "strips_at",
         "least_part",
         "full_or_empty",
         "place_corner",
@@ -206,9 +217,10 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
         "cover_part",
     ):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
-    for name in ("list_part", "blocks_inside", "motion_of_row", "motion_of_block", "solid_velocity", "rasterize_row"):
+    of_bands = "bands_between", "list_part", "lines_inside", "blocks_inside", "views_of", "rasterize_band"
+    for name in (*of_bands, "motion_of_body", "motion_of_row", "motion_of_block", "solid_velocity"):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
-    for module, name in ((coverage, "cover"), (coverage_rows, "list_rows"), (coverage_rows, "rasterize")):
+    for module, name in ((coverage, "cover"), (coverage_rows, "list_bands"), (coverage_rows, "rasterize")):
         monkeypatch.setattr(f"porescale.coupling.psm.{name}", getattr(module, name).py_func)
     plain = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
     np.testing.assert_allclose(plain.covered, compiled.covered, rtol=0, atol=area_error(1.3))
@@ -219,23 +231,24 @@ def test_loads_are_the_same_uncompiled(monkeypatch):
 
     wet = covered([(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)], nx=6, ny=5, kinds=("periodic", "wall"))
     random = np.random.default_rng(0)
-    scratch = np.zeros((5, 3, 6 + 2 * BLOCK))
-    scratch[:, :, BLOCK:-BLOCK] = random.uniform(-1, 1, (5, 3, 6))
+    scratch = np.zeros((3, BAND_HEIGHT, 6 + 2 * BLOCK))
+    scratch[:, :5, BLOCK:-BLOCK] = random.uniform(-1, 1, (3, 5, 6))
     moved = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
     motion = coverage_rows.Motion(*moved, random.uniform(-0.1, 0.1, (2, 3)), np.zeros(2))
-    rows, patches = wet._rows, wet._patches
+    bands, patches = wet._bands, wet._patches
     made = []
     for plain in (False, True):
-        take, add = load.accumulate_load_row, load.add_rows
+        take, add = load.accumulate_load_band, load.add_rows
         if plain:
             take, add = take.py_func, add.py_func
         if plain:
-            for name in ("blocks_inside", "motion_of_row", "motion_of_block", "load_of_cell", "add_rows_of"):
+            of_cells = "motion_of_body", "motion_of_row", "motion_of_block", "load_of_cell"
+            for name in ("lines_inside", "blocks_inside", *of_cells, "add_rows_of"):
                 monkeypatch.setattr(load, name, getattr(load, name).py_func)
             monkeypatch.setattr(load, "solid_velocity", coverage_rows.solid_velocity.py_func)
         row_load, loads, inside = np.full_like(wet._work.row_load, np.nan), np.zeros((2, 3)), np.zeros((2, 2))
-        for y in range(5):
-            take(y, rows, patches, motion, True, scratch[y], row_load)
+        sums = (*scratch.reshape(3, -1), scratch[2].ravel())
+        take(0, bands, patches, motion, True, sums, row_load, False)
         add(patches.corner, patches.height, 5, False, row_load, loads, inside)
         made.append(np.column_stack((loads, inside)))
     assert np.all(np.isfinite(made[0]))
@@ -274,12 +287,9 @@ def test_many_bodies_over_threads_are_as_few_by_one(periodic):
     assert blocks[0] > coverage_rows.SERIAL_BELOW > max(blocks[1:])
     many, few = parts[0], parts[1:]
     np.testing.assert_array_equal(many._patches.fraction, np.concatenate([it._patches.fraction for it in few]))
-    for y in range(208):  # those of the row in index order: first those of the first part
-        listed = [slice(*it._rows.start[y : y + 2]) for it in parts]
-        body = [it._rows.body[of].astype(int) for it, of in zip(parts, listed, strict=True)]
-        np.testing.assert_array_equal(body[0], np.concatenate((body[1], body[2] + 700)))
-        line = [it._rows.line[of] for it, of in zip(parts, listed, strict=True)]
-        np.testing.assert_array_equal(line[0], np.concatenate(line[1:]))
+    for band in range(208 // BAND_HEIGHT):  # those of the band in index order: first those of the first part
+        found = [listed(it, band) for it in parts]
+        assert found[0] == found[1] + [(n + 700, j, y) for n, j, y in found[2]]
     row_load = np.random.default_rng(3).uniform(-1, 1, (1500, 6, 5))
     loads, inside = np.zeros((3, 1500, 3)), np.zeros((3, 1500, 2))
     for k, of in enumerate((slice(1500), slice(700), slice(700, 1500))):

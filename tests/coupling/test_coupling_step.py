@@ -294,7 +294,7 @@ def test_no_kernel_of_a_step_allocates():
         coupled.fluid.advance()
         coupled.advance()
     used = [
-        coverage.cover, coverage_rows.list_rows, load.add_rows, load.half_step_correction, immersed.to_lattice,
+        coverage.cover, coverage_rows.list_bands, load.add_rows, load.half_step_correction, immersed.to_lattice,
         immersed.total_load, links.pass_on, solid_collision.sweep,
         stream.sweep, plate.exchange, integrate.contact_steps,
     ]  # fmt: skip

@@ -36,58 +36,76 @@ SCRATCH = 6
 
 
 @inline
-def small_angle(s):
-    """asin(s) for 0 <= s <= sqrt(1/2), by a polynomial in 4 s² - 1.
-
-    The Chebyshev interpolant of asin(s)/s at 18 nodes.  Nearest singularity in 4 s² - 1: at 3, so terms fall by
-    3 + sqrt(8) = 5.83 each, to less than a rounding; error measured 2.3e-16.
-    """
-    u = 4.0 * s * s - 1.0
-    p = fma(u, 4.1062856818522654e-11, 1.341269811266304e-10)
-    p = fma(u, fma(u, p, 2.5575438063659323e-10), 8.518395371797598e-10)
-    p = fma(u, fma(u, p, 3.2049981064158968e-09), 1.0809672108042573e-08)
-    p = fma(u, fma(u, p, 3.647297352409811e-08), 1.257815748470195e-07)
-    p = fma(u, fma(u, p, 4.402038834245034e-07), 1.5669849096691668e-06)
-    p = fma(u, fma(u, p, 5.701782186250886e-06), 2.1345548280526272e-05)
-    p = fma(u, fma(u, p, 8.302317801499006e-05), 0.000340863723836082)
-    p = fma(u, fma(u, p, 0.0015196685395952932), 0.0077989022389580815)
-    return s * fma(u, fma(u, p, 0.05375149359132692), 1.0471975511965979)
+def next_terms(u, p, second, first):
+    """u (u p + second) + first, of two polynomials."""
+    return fma(u[0], fma(u[0], p[0], second), first), fma(u[1], fma(u[1], p[1], second), first)
 
 
 @inline
-def quarter_area(a, r):
-    """G(a): area under the quarter circle of radius r from 0 to a, 0 <= a <= r.
+def small_angles(s, t):
+    """asin of s and t, both from 0 to sqrt(1/2), by a polynomial in 4 s² - 1.
+
+    The Chebyshev interpolant of asin(s)/s at 18 nodes.  Nearest singularity in 4 s² - 1: at 3, so terms fall by
+    3 + sqrt(8) = 5.83 each, to less than a rounding; error measured 2.3e-16.  Two at a time: the polynomials take turns
+    where one would wait for itself, a quarter of ``mark_lines``.
+    """
+    u = 4.0 * s * s - 1.0, 4.0 * t * t - 1.0
+    p = next_terms(u, (0.0, 0.0), 4.1062856818522654e-11, 1.341269811266304e-10)
+    p = next_terms(u, p, 2.5575438063659323e-10, 8.518395371797598e-10)
+    p = next_terms(u, p, 3.2049981064158968e-09, 1.0809672108042573e-08)
+    p = next_terms(u, p, 3.647297352409811e-08, 1.257815748470195e-07)
+    p = next_terms(u, p, 4.402038834245034e-07, 1.5669849096691668e-06)
+    p = next_terms(u, p, 5.701782186250886e-06, 2.1345548280526272e-05)
+    p = next_terms(u, p, 8.302317801499006e-05, 0.000340863723836082)
+    p = next_terms(u, p, 0.0015196685395952932, 0.0077989022389580815)
+    p = next_terms(u, p, 0.05375149359132692, 1.0471975511965979)
+    return s * p[0], t * p[1]
+
+
+@inline
+def quarter_areas(a, b, r):
+    """G(a), G(b): areas under the quarter circle of radius r from 0 to a, 0 <= a <= r, and to b.
 
     The angle comes from the shorter leg: asin(a/r) loses half the digits of a disc that just touches a grid line.
     """
-    h = sqrt((r - a) * (r + a))
-    angle = small_angle(minimum(a, h) * (1.0 / r if r > 0.0 else 0.0))
-    return 0.5 * (a * h + r * r * choose(a, h, 0.5 * math.pi - angle, angle))
+    high, wide = sqrt((r - a) * (r + a)), sqrt((r - b) * (r + b))
+    share = 1.0 / r if r > 0.0 else 0.0
+    one, other = small_angles(minimum(a, high) * share, minimum(b, wide) * share)
+    right = 0.5 * math.pi
+    return (
+        0.5 * (a * high + r * r * choose(a, high, right - one, one)),
+        0.5 * (b * wide + r * r * choose(b, wide, right - other, other)),
+    )
 
 
 @inline
-def line_at(distance, r):
-    """A grid line's distance from the centre clamped to [-r, r], G of it with its sign, and the sign; also of several
-    lines side by side (simd.py)."""
-    a = minimum(maximum(distance, -r), r)
-    sign = choose(0.0, a, -1.0, 1.0)
-    return a, quarter_area(sign * a, r) * sign, sign
+def lines_at(first, second, r):
+    """Of two grid lines: the distance from the centre clamped to [-r, r], G of it with its sign, and the sign; also of
+    several lines side by side (simd.py)."""
+    a, b = minimum(maximum(first, -r), r), minimum(maximum(second, -r), r)
+    left, down = choose(0.0, a, -1.0, 1.0), choose(0.0, b, -1.0, 1.0)
+    area, other = quarter_areas(left * a, down * b, r)
+    return (a, area * left, left), (b, other * down, down)
 
 
 @inline
-def mark_lines(first, count, r, at, area, side):
-    """What corners need of their grid lines, the first of them at ``first`` from the centre.
+def mark_lines(left, bottom, count, r, lines):
+    """What corners need of grid lines along y and x, the first of them at ``left`` and ``bottom`` from the centre.
 
-    Overwrites, of ``count`` lines, a multiple of LANES, and one more that repeats the last: at, distance to the centre
-    clamped to [-r, r];  side, its sign;  area, G of it with that sign.  Eight at a time, up to a multiple of that: the
-    polynomials of two vectors take turns where one would wait for itself, a tenth of a disc.
+    Overwrites, of ``count`` lines of each kind, a multiple of EIGHT, and one more that repeats the last, six rows of
+    lines: distance to the centre clamped to [-r, r], G of it with its sign, and the sign; of lines along y, then x.
     """
-    for b in range(0, count, EIGHT):
-        distance, g, sign = line_at(ramp_eight(at) + (first + b), r)
-        store_eight(at, b, distance)
-        store_eight(area, b, g)
-        store_eight(side, b, sign)
-    at[count], area[count], side[count] = at[count - 1], area[count - 1], side[count - 1]
+    a, ga, sa, b, gb, sb = lines[0], lines[1], lines[2], lines[3], lines[4], lines[5]
+    for k in range(0, count, EIGHT):
+        upright, level = lines_at(ramp_eight(a) + (left + k), ramp_eight(b) + (bottom + k), r)
+        store_eight(a, k, upright[0])
+        store_eight(ga, k, upright[1])
+        store_eight(sa, k, upright[2])
+        store_eight(b, k, level[0])
+        store_eight(gb, k, level[1])
+        store_eight(sb, k, level[2])
+    a[count], ga[count], sa[count] = a[count - 1], ga[count - 1], sa[count - 1]
+    b[count], gb[count], sb[count] = b[count - 1], gb[count - 1], sb[count - 1]
 
 
 @inline
@@ -143,23 +161,32 @@ def place_corners(centre, radius, corner):
 
 
 @inline
+def strips_at(lines, at):
+    """Lines to the left and to the right of LANES strips from the one ``at`` on, for ``strip_area``."""
+    a, ga, sa, end = lines[0], lines[1], lines[2], at + LANES
+    left = load(a, at, end), load(ga, at, end), load(sa, at, end)
+    return left, (load(a, at + 1, end + 1), load(ga, at + 1, end + 1), load(sa, at + 1, end + 1))
+
+
+@inline
 def cover_disc(x, y, r, x0, y0, height, stride, fraction, lines):
     """Fractions of the cells around one disc, centre (x, y), into fraction (height * stride,); lines: scratch.
 
-    Overwrites the first ``height`` + 1 cells of every row, and those up to a multiple of LANES.
+    stride: a multiple of EIGHT above height, in two halves that share what they need of lines along x.
     """
-    a, ga, sa, b, gb, sb = lines[0], lines[1], lines[2], lines[3], lines[4], lines[5]
-    width = (height + LANES) // LANES * LANES
-    mark_lines(x0 - x, width, r, a, ga, sa)
-    mark_lines(y0 - y, width, r, b, gb, sb)
+    b, gb, sb = lines[3], lines[4], lines[5]
+    mark_lines(x0 - x, y0 - y, stride, r, lines)
     little = least_part(r)
-    for at in range(0, width, LANES):
-        left = load(a, at, width), load(ga, at, width), load(sa, at, width)
-        right = load(a, at + 1, width + 1), load(ga, at + 1, width + 1), load(sa, at + 1, width + 1)
-        below = strip_area(left, right, across((b[0], gb[0], sb[0]), r))
+    for at in range(0, stride, EIGHT):
+        near, far = strips_at(lines, at), strips_at(lines, at + LANES)
+        line = across((b[0], gb[0], sb[0]), r)
+        below = strip_area(near[0], near[1], line), strip_area(far[0], far[1], line)
         for j in range(height):
-            above = strip_area(left, right, across((b[j + 1], gb[j + 1], sb[j + 1]), r))
-            store(fraction, j * stride + at, fraction.shape[0], full_or_empty(above - below, little))
+            line = across((b[j + 1], gb[j + 1], sb[j + 1]), r)
+            above = strip_area(near[0], near[1], line), strip_area(far[0], far[1], line)
+            here, half = j * stride + at, j * stride + at + LANES
+            store(fraction, here, half, full_or_empty(above[0] - below[0], little))
+            store(fraction, half, half + LANES, full_or_empty(above[1] - below[1], little))
             below = above
 
 

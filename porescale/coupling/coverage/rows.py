@@ -1,7 +1,9 @@
 """The rows of the lattice that bodies lie in, and what they cover of each.
 
-A body, whatever its shape, has filled a patch of solid fractions around itself.  A list of the bodies in every row, in
-index order so that sums do not depend on threads, lets a row be rasterized (``rasterize_row``) when it is needed.
+A body, whatever its shape, has filled a patch of solid fractions around itself.  The lattice is done in bands of a few
+rows.  A list of the bodies in every band, in index order so that sums do not depend on threads, lets its rows be
+rasterized (``rasterize_band``) when they are needed: what holds for a whole body is then found once for several rows,
+which is most of the work where these are a few cells long.
 Patches and the scratch of a row are worked through in blocks of ``BLOCK`` cells, a number fixed when kernels are
 compiled: a loop of a dozen cells would run cell by cell otherwise.
 """
@@ -11,17 +13,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch
+from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch, thread, unchecked_view
 from porescale.common.compiled.simd import EIGHT, fma, load_eight, ramp_eight, store_eight
 from porescale.common.core.aligned import aligned_zeros
 
 BLOCK = EIGHT
 """Cells done at once."""
-AHEAD = 12
-"""Entries of a row ahead of which patches are fetched: bodies lie apart in memory, and waiting for each would cost more
-than all that is done with it."""
+AHEAD = 4
+"""Entries of a band ahead of which patches are fetched: bodies lie apart in memory, and waiting for each would cost
+more than all that is done with it."""
+LINE = 16
+"""Numbers from one fetch to the next: a line of the cache in single precision, a pair of lines in double."""
 LISTING = 4
-"""Parts of the lattice whose rows are listed side by side; any number gives the same lists."""
+"""Parts of the lattice whose bands are listed side by side; any number gives the same lists."""
 SERIAL_BELOW = 8192
 """Blocks of all patches: fewer are covered and listed by one thread, in 0.4 ms at most; and rows that loads have room
 for, that are added so.  To have two threads begin and end a loop takes 0.1 to 0.5 ms beside six other
@@ -56,16 +60,20 @@ class Motion(NamedTuple):
     theta: NDArray[np.floating]
 
 
-class Rows(NamedTuple):
-    """Which bodies lie in which row of the lattice: entries start[y] to start[y + 1] - 1 are those of row y.
+class Bands(NamedTuple):
+    """Which bodies lie in which band of the lattice: entries start[b] to start[b + 1] - 1 are those of band b.
 
-    start (ny + 1,);  body, line (as many as patches have rows): the body, and the row of its patch.  Not negative by
-    their type: an index that might be is tested at each use, a tenth of a sweep of discs of four cells.
+    height: rows of a band, the last of which may have less;  rows: of the lattice;  start (bands + 1,);  body, low (as
+    many as patches have rows): the body, and the row of the lattice in which its patch begins, beyond a periodic side,
+    too.  A body is not negative by its type: an index that might be is tested at each use, a tenth of a sweep of discs
+    of four cells.
     """
 
+    height: int
+    rows: int
     start: NDArray[np.int64]
     body: NDArray[np.uint32]
-    line: NDArray[np.uint32]
+    low: NDArray[np.int64]
 
 
 def whole_blocks(cells: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -81,10 +89,11 @@ def make_patches(width: NDArray[np.int64], height: NDArray[np.int64], dtype: np.
     return Patches(np.zeros((len(width), 2), np.int64), height, stride, start, aligned_zeros(int(np.sum(size)), dtype))
 
 
-def make_rows(patches: Patches, ny: int) -> Rows:
-    """Lists that hold all rows of the patches."""
+def make_bands(patches: Patches, ny: int, height: int) -> Bands:
+    """Lists that hold the patches in bands of ``height`` rows: each entry stands for a row or more of its body."""
     entries = int(np.sum(patches.height))
-    return Rows(np.zeros(ny + 1, np.int64), np.zeros(entries, np.uint32), np.zeros(entries, np.uint32))
+    start = np.zeros(-(-ny // height) + 1, np.int64)
+    return Bands(height, ny, start, np.zeros(entries, np.uint32), np.zeros(entries, np.int64))
 
 
 @inline
@@ -93,67 +102,77 @@ def is_few(patches):
     return patches.fraction.shape[0] < SERIAL_BELOW * BLOCK
 
 
-@parallel_kernel
-def list_rows(patches, periodic_y, rows):
-    """Which bodies lie in which row of the lattice, and with which row of their patch, in index order: a counting sort.
+@inline
+def bands_between(low, high, bands):
+    """First and one past the last band of rows ``low`` to ``high`` - 1; none of rows beyond the lattice."""
+    low, high = max(low, 0), min(high, bands.rows)
+    if low >= high:
+        return 0, 0
+    return low // bands.height, (high - 1) // bands.height + 1
 
-    Overwrites rows.  A body is higher than a periodic box by two rows at most.
+
+@parallel_kernel
+def list_bands(patches, periodic_y, bands):
+    """Which bodies lie in which band of the lattice, and from which row on, in index order: a counting sort.
+
+    Overwrites bands.  A body is higher than a periodic box by two rows at most.
     """
-    start = rows.start
-    ny = start.shape[0] - 1
+    start = bands.start
+    count = start.shape[0] - 1
     start[:] = 0
-    # How many begin less how many have ended in each row; then their sums, the number in each; then their sums.
+    # How many begin less how many have ended in each band; then their sums, the number in each; then their sums.
     for n in range(patches.height.shape[0]):
         low = patches.corner[n, 1]
-        high = low + patches.height[n]
         if periodic_y:
-            low %= ny
-            high = low + patches.height[n]
-            while high > ny:
-                start[low] += 1
-                start[ny] -= 1
-                low = 0
-                high -= ny
-        low = max(low, 0)
-        high = min(high, ny)
-        if low < high:
-            start[low] += 1
-            start[high] -= 1
+            low %= bands.rows
+        while True:  # once, or again for what lies beyond a periodic side
+            first, last = bands_between(low, low + patches.height[n], bands)
+            start[first] += 1
+            start[last] -= 1
+            low -= bands.rows
+            if not periodic_y or low + patches.height[n] <= 0:
+                break
     here = 0
     total = 0
-    for y in range(ny + 1):
-        here += start[y]
-        start[y] = total
+    for b in range(count + 1):
+        here += start[b]
+        start[b] = total
         total += here
     if is_few(patches):
-        list_part(patches, periodic_y, rows, 0, ny)
+        list_part(patches, periodic_y, bands, 0, count)
     else:
         for piece in prange(LISTING):
-            list_part(patches, periodic_y, rows, piece * ny // LISTING, (piece + 1) * ny // LISTING)
-    for y in range(ny, 0, -1):
-        start[y] = start[y - 1]
+            list_part(patches, periodic_y, bands, piece * count // LISTING, (piece + 1) * count // LISTING)
+    for b in range(count, 0, -1):
+        start[b] = start[b - 1]
     start[0] = 0
 
 
 @inline
-def list_part(patches, periodic_y, rows, first, last):
-    """List rows ``first`` to ``last`` - 1 of the lattice; moves rows.start of each to where its entries end."""
-    ny = rows.start.shape[0] - 1
+def list_part(patches, periodic_y, bands, begin, end):
+    """List bands ``begin`` to ``end`` - 1 of the lattice; moves bands.start of each to where its entries end."""
     for n in range(patches.height.shape[0]):
         low = patches.corner[n, 1]
         if periodic_y:
-            low %= ny
-        high = low + patches.height[n]
+            low %= bands.rows
         while True:  # once, or again for what lies beyond a periodic side
-            for y in range(max(low, first), min(high, last)):
-                at = rows.start[y]
-                rows.body[at] = n
-                rows.line[at] = y - low
-                rows.start[y] = at + 1
-            low -= ny
-            high -= ny
-            if not periodic_y or high <= 0:
+            first, last = bands_between(low, low + patches.height[n], bands)
+            for b in range(max(first, begin), min(last, end)):
+                at = bands.start[b]
+                bands.body[at] = n
+                bands.low[at] = low
+                bands.start[b] = at + 1
+            low -= bands.rows
+            if not periodic_y or low + patches.height[n] <= 0:
                 break
+
+
+@inline
+def lines_inside(k, band, bands, patches):
+    """Rows of the patch of entry ``k`` that lie in ``band``: first, one past the last."""
+    low, bottom = bands.low[k], band * bands.height
+    top = min(bottom + bands.height, bands.rows)
+    return max(bottom - low, 0), min(top - low, patches.height[bands.body[k]])
 
 
 @inline
@@ -166,118 +185,164 @@ def blocks_inside(base, stride, nx):
 
 
 @inline
-def motion_of_row(n, j, patches, motion):
-    """How the cells of row ``j`` of body n's patch move: what ``motion_of_block`` makes blocks of.
+def motion_of_body(n, patches, motion):
+    """How body ``n`` moves, in double precision: what ``motion_of_row`` makes rows of.
 
-    (x, y) from the centre to its first cell, turning and twist (spin and its correction), vx and cx, the part that all
-    its cells have and the correction of full ones, and vy, cy of its first cell.
+    Along x and y: the cell at the lower left of its patch, the centre, velocity and its correction;  spin and twist
+    (the spin's correction).
     """
-    real = patches.fraction.dtype.type
-    velocity, spin, shift = motion.velocity, motion.spin, motion.shift
-    ry = patches.corner[n, 1] + j + 0.5 - motion.centre[n, 1]
-    rx = patches.corner[n, 0] + 0.5 - motion.centre[n, 0]
+    corner, centre, velocity, shift = patches.corner, motion.centre, motion.velocity, motion.shift
     return (
-        rx,
-        ry,
-        real(spin[n]),
-        real(shift[n, 2]),
-        real(velocity[n, 0] - spin[n] * ry),
-        real(shift[n, 0] - shift[n, 2] * ry),
-        velocity[n, 1] + spin[n] * rx,
-        shift[n, 1] + shift[n, 2] * rx,
+        (corner[n, 0], corner[n, 1]),
+        (centre[n, 0], centre[n, 1]),
+        (velocity[n, 0], velocity[n, 1]),
+        (shift[n, 0], shift[n, 1]),
+        motion.spin[n],
+        shift[n, 2],
     )
 
 
 @inline
-def motion_of_block(n, b, row, patches, motion):
-    """How the block that begins with cell ``b`` of a row moves;  row: ``motion_of_row``.
+def motion_of_row(j, body):
+    """How the cells of row ``j`` of a patch move: what ``motion_of_block`` makes blocks of;  body: ``motion_of_body``.
 
-    (x, y) from the centre to its first cell, turning and twist, vx and cx, vy and cy of its first cell.
+    (x, y) from the centre to its first cell, spin and twist, vx and cx, the part that all its cells have and the
+    correction of full ones, and vy, cy of its first cell.
     """
-    real = patches.fraction.dtype.type
-    rx, ry, turning, twist, vx, cx, vy, cy = row
+    corner, centre, velocity, shift, spin, twist = body
+    ry = corner[1] + j + 0.5 - centre[1]
+    rx = corner[0] + 0.5 - centre[0]
+    return (
+        rx,
+        ry,
+        spin,
+        twist,
+        velocity[0] - spin * ry,
+        shift[0] - twist * ry,
+        velocity[1] + spin * rx,
+        shift[1] + twist * rx,
+    )
+
+
+@inline
+def motion_of_block(b, row, fraction):
+    """How the block that begins with cell ``b`` of a row moves, in the precision of ``fraction``;  row:
+    ``motion_of_row``.
+
+    (x, y) from the centre to its first cell, spin and twist, vx and cx, vy and cy of its first cell.
+    """
+    real = fraction.dtype.type
+    rx, ry, spin, twist, vx, cx, vy, cy = row
     return (
         real(rx + b),
         real(ry),
-        turning,
-        twist,
-        vx,
-        cx,
-        real(vy + motion.spin[n] * b),
-        real(cy + motion.shift[n, 2] * b),
+        real(spin),
+        real(twist),
+        real(vx),
+        real(cx),
+        real(vy + spin * b),
+        real(cy + twist * b),
     )
 
 
 @inline
 def solid_velocity(e, i, block):
     """Velocity of a body in cell ``i`` of a block of which it covers e;  block: ``motion_of_block``."""
-    _, _, turning, twist, vx, cx, vy, cy = block
-    return fma(e, cx, vx), fma(e, fma(twist, i, cy), fma(turning, i, vy))
+    _, _, spin, twist, vx, cx, vy, cy = block
+    return fma(e, cx, vx), fma(e, fma(twist, i, cy), fma(spin, i, vy))
 
 
 @inline
-def rasterize_row(y, rows, patches, motion, periodic_x, scratch):
-    """Add up the solid fractions of one row, and fractions times solid velocity at the cells' centres.
+def views_of(scratch, mine):
+    """Four views (n,) of what thread ``mine`` has of scratch (threads, 3 or 4, n), the last one twice of three.
+
+    They own nothing: to count references takes as long as a row of a few cells, longer where threads share the count.
+    """
+    n, last = scratch.shape[2], scratch.shape[1] - 1
+    return (
+        unchecked_view(scratch[mine, 0], 0, n),
+        unchecked_view(scratch[mine, 1], 0, n),
+        unchecked_view(scratch[mine, 2], 0, n),
+        unchecked_view(scratch[mine, last], 0, n),
+    )
+
+
+@inline
+def rasterize_band(band, bands, patches, motion, periodic_x, sums, extent, soft):
+    """Add up the solid fractions of the rows of a band, and fractions times solid velocity at the cells' centres.
 
     The velocity in a cell that a body covers by e is its own and e times the half-step correction.
 
-    y: row of the lattice;  motion: ``Motion``  Adds to scratch (3 or 4, BLOCK + nx +
-    BLOCK), whose fourth row, where rims are soft, gets fractions times theta; returns the first column that may be
-    covered and one past the last.
+    motion: ``Motion``.  Adds to sums, four views (height of a band times (BLOCK + nx + BLOCK),), row by row, of which
+    the fourth, where rims are ``soft``, gets fractions times theta, and is not touched elsewhere;  overwrites extent (2
+    height,): the first column of each row that may be covered and one past the last.  All loops in one function, see
+    ``views_of``: references to arrays that a loop passes on to another one are counted.
     """
-    nx = scratch.shape[1] - 2 * BLOCK
-    s, sx, sy = scratch[0], scratch[1], scratch[2]
-    leftmost = nx
-    rightmost = 0
-    for k in range(rows.start[y], rows.start[y + 1]):
-        if k + AHEAD < rows.body.shape[0]:
-            m = rows.body[k + AHEAD]
-            soon = patches.start[m] + rows.line[k + AHEAD] * patches.stride[m]
-            prefetch(patches.fraction, soon)
-            prefetch(patches.fraction, soon + BLOCK)
-        n = rows.body[k]
-        j = rows.line[k]
-        stride = patches.stride[n]
-        at = patches.start[n] + j * stride
-        base = patches.corner[n, 0]
-        row = motion_of_row(n, j, patches, motion)
+    s, sx, sy, st = sums
+    wide = s.shape[0] // bands.height
+    nx = wide - 2 * BLOCK
+    fraction = patches.fraction
+    for i in range(bands.height):
+        extent[2 * i] = nx
+        extent[2 * i + 1] = 0
+    for k in range(bands.start[band], bands.start[band + 1]):
+        if k + AHEAD < bands.start[band + 1]:
+            m = bands.body[k + AHEAD]
+            soon = patches.start[m] + max(band * bands.height - bands.low[k + AHEAD], 0) * patches.stride[m]
+            for b in range(0, 3 * LINE, LINE):  # those of a small body; what follows in memory comes by itself
+                prefetch(fraction, soon + b)
+        n = bands.body[k]
+        base, stride = patches.corner[n, 0], patches.stride[n]
+        body = motion_of_body(n, patches, motion)
+        above = bands.low[k] - band * bands.height
         if periodic_x:
             base %= nx
+        begin, end = lines_inside(k, band, bands, patches)
+        theta = s.dtype.type(motion.theta[n])
         while base + stride > 0:  # once, or again for what lies beyond a periodic side
             first, last = blocks_inside(base, stride, nx)
-            for b in range(first, last, BLOCK):
-                block = motion_of_block(n, b, row, patches, motion)
-                e, i, x = load_eight(patches.fraction, at + b), ramp_eight(s), base + b + BLOCK
-                vx, vy = solid_velocity(e, i, block)
-                store_eight(s, x, load_eight(s, x) + e)
-                store_eight(sx, x, load_eight(sx, x) + e * vx)
-                store_eight(sy, x, load_eight(sy, x) + e * vy)
-                if scratch.shape[0] > 3:
-                    st = scratch[3]
-                    store_eight(st, x, load_eight(st, x) + e * s.dtype.type(motion.theta[n]))
+            at = patches.start[n] + begin * stride
+            x0 = (above + begin) * wide + BLOCK + base
+            for j in range(begin, end):
+                row = motion_of_row(j, body)
+                for b in range(first, last, BLOCK):
+                    block = motion_of_block(b, row, s)
+                    e, i, x = load_eight(fraction, at + b), ramp_eight(s), x0 + b
+                    vx, vy = solid_velocity(e, i, block)
+                    store_eight(s, x, load_eight(s, x) + e)
+                    store_eight(sx, x, load_eight(sx, x) + e * vx)
+                    store_eight(sy, x, load_eight(sy, x) + e * vy)
+                    if soft:
+                        store_eight(st, x, load_eight(st, x) + e * theta)
+                at += stride
+                x0 += wide
             if first < last:
-                leftmost = min(leftmost, base + first)
-                rightmost = max(rightmost, base + last)
+                for i in range(above + begin, above + end):
+                    extent[2 * i] = min(extent[2 * i], max(base + first, 0))
+                    extent[2 * i + 1] = max(extent[2 * i + 1], min(base + last, nx))
             if not periodic_x:
                 break
             base -= nx
-    return max(leftmost, 0), min(rightmost, nx)
 
 
 @parallel_kernel
-def rasterize(rows, patches, motion, periodic_x, scratch, out):
-    """All rows at once, for output: overwrites out (3, ny, nx) with what ``rasterize_row`` gives.
+def rasterize(bands, patches, motion, periodic_x, scratch, extent, out):
+    """All bands at once, for output: overwrites out (3, ny, nx) with the sums of ``rasterize_band``.
 
-    scratch (bands, 3 or 4, BLOCK + nx + BLOCK): zero before and after.
+    scratch (threads, 3 or 4, height times (BLOCK + nx + BLOCK)): zero before and after;  extent (threads, 2 height):
+    scratch.
     """
-    bands = scratch.shape[0]
-    ny, nx = out.shape[1], out.shape[2]
-    for band in prange(bands):
-        for y in range(band * ny // bands, (band + 1) * ny // bands):
-            rasterize_row(y, rows, patches, motion, periodic_x, scratch[band])
+    nx = out.shape[2]
+    wide = nx + 2 * BLOCK
+    for band in prange(bands.start.shape[0] - 1):
+        mine = thread()
+        reach = unchecked_view(extent[mine], 0, extent.shape[1])
+        rasterize_band(band, bands, patches, motion, periodic_x, views_of(scratch, mine), reach, scratch.shape[1] > 3)
+        first = band * bands.height
+        for i in range(min(bands.height, bands.rows - first)):
             for k in range(3):  # element by element: assigned as slices it takes ten times as long to compile
                 for x in range(nx):
-                    out[k, y, x] = scratch[band, k, BLOCK + x]
+                    out[k, first + i, x] = scratch[mine, k, i * wide + BLOCK + x]
             for k in range(scratch.shape[1]):
-                for x in range(scratch.shape[2]):
-                    scratch[band, k, x] = 0
+                for x in range(wide):
+                    scratch[mine, k, i * wide + x] = 0

@@ -9,7 +9,7 @@ Plain functions: ``device_kernel`` of common/compiled/cuda.py compiles them for 
 from typing import Any
 
 from porescale.common.compiled.cuda import grid
-from porescale.coupling.coverage.discs import across, full_or_empty, least_part, line_at, strip_area
+from porescale.coupling.coverage.discs import across, full_or_empty, least_part, lines_at, strip_area
 from porescale.coupling.coverage.overlap import subtract_in_row
 from porescale.coupling.coverage.rows import BLOCK
 from porescale.coupling.coverage.soft_rim import filter_cell, filter_row
@@ -35,10 +35,11 @@ def mark_discs(centre: Any, radius: Any, patches: Any, owners: Any, lines: Any) 
         i = k - owners.first_line[n]
         b = i // BLOCK * BLOCK
         spread = 2 if patches.theta[n] > 0.0 else 0
-        for axis in range(2):
-            first = patches.corner[n, axis] + spread - centre[n, axis]
-            at, area, side = line_at(first + b + (i - b), radius[n])
-            lines[axis, 0, k], lines[axis, 1, k], lines[axis, 2, k] = at, area, side
+        left = patches.corner[n, 0] + spread - centre[n, 0] + b
+        bottom = patches.corner[n, 1] + spread - centre[n, 1] + b
+        upright, level = lines_at(left + (i - b), bottom + (i - b), radius[n])
+        lines[0, 0, k], lines[0, 1, k], lines[0, 2, k] = upright
+        lines[1, 0, k], lines[1, 1, k], lines[1, 2, k] = level
 
 
 def cover_discs(radius: Any, patches: Any, owners: Any, lines: Any, cells: Any) -> None:

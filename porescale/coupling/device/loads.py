@@ -88,8 +88,8 @@ def row_of(k, box, patches, owners):
 
 
 def load_rows(box: Any, tiles: Any, patches: Any, owners: Any, row_load: Any) -> None:
-    """``accumulate_load_row`` of every row of every body: overwrites row_load (n, largest height, 5 or more);  threads:
-    rows."""
+    """``accumulate_load_band`` of every row of every body: overwrites row_load (n, largest height, 5 or more);
+    threads: rows."""
     k = grid()
     if k < owners.row.shape[0]:
         n, j, y = row_of(k, box, patches, owners)
@@ -118,7 +118,7 @@ def load_rows(box: Any, tiles: Any, patches: Any, owners: Any, row_load: Any) ->
 
 
 def rim_rows(box: Any, tiles: Any, patches: Any, owners: Any, row_load: Any) -> None:
-    """The two sums of ``accumulate_load_row`` where rims are soft: overwrites the last two of row_load;  threads:
+    """The two sums of ``accumulate_load_band`` where rims are soft: overwrites the last two of row_load;  threads:
     rows."""
     k = grid()
     if k < owners.row.shape[0]:

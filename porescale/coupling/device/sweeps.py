@@ -8,7 +8,14 @@ from typing import Any
 
 from porescale.common.compiled.cuda import grid
 from porescale.common.compiled.jit import inline
-from porescale.coupling.coverage.rows import BLOCK, blocks_inside, motion_of_block, motion_of_row, solid_velocity
+from porescale.coupling.coverage.rows import (
+    BLOCK,
+    blocks_inside,
+    motion_of_block,
+    motion_of_body,
+    motion_of_row,
+    solid_velocity,
+)
 from porescale.coupling.device.tiles import TILE_HEIGHT, TILE_WIDTH
 from porescale.coupling.psm_kernels import collide_saturated_cell, stretches, weights_of_cell
 from porescale.coupling.solid.law import is_soft
@@ -28,10 +35,10 @@ def move_blocks(motion: Any, patches: Any, owners: Any) -> None:
         j = (k * BLOCK - patches.start[n]) // stride
         b = k * BLOCK - patches.start[n] - j * stride
         if j < patches.height[n]:
-            row = motion_of_row(n, j, patches, motion)
-            x, y, turning, twist, vx, cx, vy, cy = motion_of_block(n, b, row, patches, motion)
+            row = motion_of_row(j, motion_of_body(n, patches, motion))
+            x, y, spin, twist, vx, cx, vy, cy = motion_of_block(b, row, patches.fraction)
             patches.blocks[k, 0], patches.blocks[k, 1] = x, y
-            patches.blocks[k, 2], patches.blocks[k, 3] = turning, twist
+            patches.blocks[k, 2], patches.blocks[k, 3] = spin, twist
             patches.blocks[k, 4], patches.blocks[k, 5] = vx, cx
             patches.blocks[k, 6], patches.blocks[k, 7] = vy, cy
 
@@ -67,7 +74,7 @@ def tile_extent(t, y, box, tiles, patches):
 
 
 def find_extents(box: Any, tiles: Any, patches: Any) -> None:
-    """Which cells of every row are saturated, as in ``saturated_row``: overwrites ``extent``;  threads: ny.
+    """Which cells of every row are saturated, as in ``collide_partly``: overwrites ``extent``;  threads: ny.
 
     All bodies that reach as far to the left as any do are listed in the first tile that holds one.
     """
@@ -89,7 +96,7 @@ def find_extents(box: Any, tiles: Any, patches: Any) -> None:
 
 @inline
 def bodies_of_cell(x, y, t, box, tiles, patches, soft):
-    """``rasterize_row`` of one cell: sums of the fractions, of fraction times theta, and of fraction times velocity."""
+    """``rasterize_band`` of one cell: sums of fractions, of fraction times theta, and of fraction times velocity."""
     real = patches.fraction.dtype.type
     s, theta, sx, sy = real(0), real(0), real(0), real(0)
     for k in range(tiles.start[t], tiles.start[t + 1]):
@@ -123,7 +130,7 @@ def bodies_of_cell(x, y, t, box, tiles, patches, soft):
 
 
 def sweep_tiles(f: Any, parity: Any, part: Any, box: Any, tiles: Any, patches: Any, laws: Any) -> None:
-    """``saturated_row`` of the cells of some tiles: overwrites populations f, and ``gained`` where there are bodies.
+    """``collide_partly`` of the cells of some tiles: overwrites populations f, and ``gained`` where there are bodies.
 
     part: the first of the tiles in ``order``, and how many;  laws: of weight, solid and fluid operator;  threads: cells
     of as many tiles.
