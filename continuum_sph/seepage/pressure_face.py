@@ -39,9 +39,9 @@ class PressureFace:
     """A face of given pressure.
 
     rows : (k,) numbers of its wall particles;  point : (x, y) m on it;  normal : (x, y) of unit length, into the
-    water;  pressure : (k,) Pa, at the foot of each particle, settable at any time;  corners : (l,)
-    numbers of the wall particles behind it that lie beyond its ends, in corners of the tank;  columns : (m, layers)
-    numbers of those of ``rows`` behind each other;  whole, slope : (m,) 1/m and 1/m², push of each column on the water of the start
+    water;  pressure : (k,) Pa, at the foot of each particle, settable at any time;  corners : (l,) numbers of the wall
+    particles behind it that lie beyond its ends, in corners of the tank;  columns : (m, layers) numbers of those of
+    ``rows`` behind each other;  whole, slope : (m,) 1/m and 1/m², push of each column on the water of the start
     (`push_of`), and how it grows as the column moves along the normal.
     """
 
@@ -126,8 +126,8 @@ def prescribe_pressure(rows, given, near, x, record, pressure, ox, oy, nx, ny):
 
 @parallel_kernel
 def continue_in_corners(corners, near, x, v, record, pressure, gx, gy):
-    """Overwrites pressure of the wall particles ``corners`` (l,) in ``record`` and ``pressure`` (n,) Pa with that of the
-    water before them continued, of either sign.
+    """Overwrites pressure of the wall particles ``corners`` (l,) in ``record`` and ``pressure`` (n,) Pa with that of
+    the water before them continued, of either sign.
 
     near: see `water.bundles`;  x, v (n, 2) m, m/s;  (gx, gy): gravity, m/s².
     """

@@ -6,11 +6,10 @@ Eng. 139 (1996) 375; Bonet & Lok, ibid. 180 (1999) 97.  A pair uses (L_i + L_j)/
 which keeps its forces opposite and its energies in balance.  Where neighbours lie on one side only M is nearly
 singular: L goes over to the unit tensor as the smaller eigenvalue of M falls from FULL to NONE.
 
-The gradient of density is taken within the fluid, so walls are no partners in it, and a first row before one has
-half a neighbourhood.  Its L goes over to the unit tensor from ENOUGH to ALONE only: with FULL and NONE diffusion of what
-departs from a linear field (`density`) saw one in the weight of water itself, and moved it in the first rows of ground
-before each wall, at ±0.02 k; between faces of 8 rows under a gradient of 0.05 flow was 14 to 21 % too much, 1.3 % under
-0.5.
+The gradient of density is taken within the fluid, so walls are no partners in it, and a first row before one has half
+a neighbourhood.  Its L goes over to the unit tensor from ENOUGH to ALONE only: with FULL and NONE diffusion of what
+departs from a linear field (`density`) saw that in the weight of water itself, and moved it in the first rows of ground
+before each wall, at ±0.02 k; between faces of 8 rows under a gradient of 0.05 flow was 14 to 21 % too much.
 
 Water in the open that moves shrinks with L_i (12 to 24 % in four sloshes): plain sums push particles towards gaps twice
 as hard, and lose no volume.  So among grains alone water has L_i (`seepage.mixture.open_gradients`).  Plain sums over a
