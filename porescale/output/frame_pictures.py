@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
 from porescale.common.core.types import AnyArray
-from porescale.common.pictures.look import Line
+from porescale.common.pictures.look import Line, Look, length_unit
+from porescale.common.pictures.repeated import shifts
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.output.frame_clouds import BONDS
 
@@ -57,20 +58,20 @@ def _line(a: AnyArray, b: AnyArray) -> Line:
     return (float(a[0]), float(a[1])), (float(b[0]), float(b[1]))
 
 
-def draw_frames(axes: Axes, frames: Cloud, factor: float, colours: Any, rims: Any) -> None:
-    """Polygons filled, other segments as lines; ``colours`` and ``rims``: one for all, or one of each point.
-
-    factor : of lengths in m to the axes' unit.
-    """
-    at = factor * frames.position
+def draw_frames(axes: Axes, frames: Cloud, look: Look, colours: Any, rims: Any) -> None:
+    """Polygons filled, other segments as lines; ``colours`` and ``rims``: one for all, or one of each point."""
+    assert look.view
+    factor, _ = length_unit(look.view)
     offsets, corners = frames.polygons or (np.zeros(1, np.int64), np.zeros(0, np.int64))
     loops = [corners[a:b] for a, b in zip(offsets[:-1].tolist(), offsets[1:].tolist(), strict=True)]
     first = np.array([loop[0] for loop in loops], np.int64)
     one = isinstance(colours, str)
     faces, edges = (colours, rims) if one else (colours[first], np.asarray(rims)[first].tolist())
-    axes.add_collection(
-        PolyCollection([at[loop] for loop in loops], facecolors=faces, edgecolors=edges, linewidths=0.6)
-    )
-    if frames.lines is not None and len(frames.lines):
-        shade = rims if one else np.asarray(rims)[frames.lines[:, 0]].tolist()
-        axes.add_collection(LineCollection(list(at[frames.lines]), colors=shade, linewidths=2.0, capstyle="round"))
+    for shift in shifts(frames, look):
+        at = factor * (frames.position + shift)
+        axes.add_collection(
+            PolyCollection([at[loop] for loop in loops], facecolors=faces, edgecolors=edges, linewidths=0.6)
+        )
+        if frames.lines is not None and len(frames.lines):
+            shade = rims if one else np.asarray(rims)[frames.lines[:, 0]].tolist()
+            axes.add_collection(LineCollection(list(at[frames.lines]), colors=shade, linewidths=2.0, capstyle="round"))

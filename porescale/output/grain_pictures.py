@@ -20,6 +20,7 @@ from porescale.common.core.atomic import whole
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import Look, length_unit, time_text
 from porescale.common.pictures.picture import paint_last
+from porescale.common.pictures.repeated import again, discs_again
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.dem.prepare.compaction import write_packing
 from porescale.output.frame_clouds import FRAMES
@@ -84,17 +85,19 @@ def chains(snapshot: Snapshot, look: Look) -> Figure:
     title = f"{look.title}: normal forces, {time_text(snapshot.time, snapshot.time)}"
     figure, axes, factor, points = _stage(look, title)
     if "grains" in snapshot.clouds:
-        _discs(axes, snapshot.clouds["grains"], factor, ["#efe9dc"] * len(snapshot.clouds["grains"].position))
+        _discs(axes, snapshot.clouds["grains"], look, "#efe9dc", "#b5ab98", 0.4)
     if FRAMES in snapshot.clouds:
-        draw_frames(axes, snapshot.clouds[FRAMES], factor, "#efe9dc", "#b5ab98")
+        draw_frames(axes, snapshot.clouds[FRAMES], look, "#efe9dc", "#b5ab98")
     force = np.asarray(contacts.data["normal_force"], float)
     loaded = force > 0.0
     if loaded.any():
-        lines = branches(grains, contacts)[loaded] * factor
+        lines = branches(grains, contacts)[loaded]
+        which, shift = again(lines.min(axis=1), lines.max(axis=1), look)
+        lines = (lines[which] + shift[:, None]) * factor
         strongest = float(np.percentile(force[loaded], 99))
         thickest = THICKEST * 2.0 * _mean_radius(snapshot) * points
-        width = np.minimum(force[loaded] / strongest, 2.0) * thickest
-        colours = np.where(np.asarray(contacts.data["sliding"], bool)[loaded], "#e2893b", "#8c1c2f")
+        width = np.minimum(force[loaded][which] / strongest, 2.0) * thickest
+        colours = np.where(np.asarray(contacts.data["sliding"], bool)[loaded][which], "#e2893b", "#8c1c2f")
         axes.add_collection(LineCollection(list(lines), linewidths=width, colors=colours.tolist(), capstyle="round"))
         shown = [Patch(color="#8c1c2f", label="sticking"), Patch(color="#e2893b", label="sliding")]
         axes.legend(handles=shown, loc="upper right", fontsize=8, framealpha=0.8,
@@ -106,16 +109,17 @@ def numbers(snapshot: Snapshot, look: Look) -> Figure:
     """Discs coloured by their number of loaded contacts; rattlers with a blue rim."""
     grains = snapshot.clouds.get("grains", Cloud(np.zeros((0, 2)), {
         "radius": np.zeros(0), "contact_number": np.zeros(0), "rattler": np.zeros(0)}))  # fmt: skip
-    figure, axes, factor, _ = _stage(look, f"{look.title}: contacts, {time_text(snapshot.time, snapshot.time)}")
+    figure, axes, _, _ = _stage(look, f"{look.title}: contacts, {time_text(snapshot.time, snapshot.time)}")
     count = np.minimum(np.asarray(grains.data["contact_number"], int), MOST)
     loose = np.asarray(grains.data["rattler"], bool)
     painted = ListedColormap(COLOURS)(count)
-    _discs(axes, grains, factor, painted, ["#2f6fb0" if it else "#3b352b" for it in loose], np.where(loose, 1.2, 0.4))
+    rims = np.where(loose, "#2f6fb0", "#3b352b")
+    _discs(axes, grains, look, painted, rims, np.where(loose, 1.2, 0.4))
     if FRAMES in snapshot.clouds:
         frames = snapshot.clouds[FRAMES]
         shown = ListedColormap(COLOURS)(np.minimum(np.asarray(frames.data["contact_number"], int), MOST))
         rims = np.where(np.asarray(frames.data["rattler"], bool), "#2f6fb0", "#3b352b")
-        draw_frames(axes, frames, factor, shown, rims)
+        draw_frames(axes, frames, look, shown, rims)
     handles = [
         Patch(facecolor=colour, edgecolor="#3b352b", label=f"{k}{' and more' if k == MOST else ''}")
         for k, colour in enumerate(COLOURS)
@@ -202,19 +206,22 @@ def _stage(look: Look, title: str) -> tuple[Figure, Axes, float, float]:
     return figure, axes, factor, 72.0 * wide / (right - left)
 
 
-def _discs(axes: Axes, grains: Cloud, factor: float, colours: Any, rims: Any = "#b5ab98", widths: Any = 0.4) -> None:
-    """All discs as circles to scale."""
-    size = 2.0 * factor * np.asarray(grains.data["radius"], float)
+def _discs(axes: Axes, grains: Cloud, look: Look, colours: Any, rims: Any, widths: Any) -> None:
+    """All discs as circles to scale; ``colours``, ``rims``, ``widths``: one for all, or one of each."""
+    assert look.view
+    factor, _ = length_unit(look.view)
+    which, places = discs_again(grains, look)
+    size = 2.0 * factor * np.asarray(grains.data["radius"], float)[which]
+    own = (it if isinstance(it, str | float) else np.asarray(it)[which] for it in (colours, rims, widths))
+    shown = dict(zip(("facecolors", "edgecolors", "linewidths"), own, strict=True))
     axes.add_collection(
         EllipseCollection(
             size,
             size,
             np.zeros_like(size),
             units="x",
-            offsets=factor * grains.position,
+            offsets=factor * places,
             offset_transform=axes.transData,
-            facecolors=colours,
-            edgecolors=rims,
-            linewidths=widths,
+            **shown,
         )
     )

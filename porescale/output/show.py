@@ -65,11 +65,22 @@ def look_of_scene(scene: dict[str, Any], name: str) -> Look:
         shapes=FRAMES,
         marks=cracks,
         view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
+        period=periods(scene),
         held=len(scene.get("disc") or ()),
         density=(fluid or {}).get("density") or 0.0,
         round_off=1e-4 if (fluid or {}).get("precision") == "float32" else 1e-12,
     )
     return with_section(look, scene.get("look"), cells=fluid is not None)
+
+
+def periods(scene: dict[str, Any]) -> tuple[float, float]:
+    """Width and height, m, of the box of a scene on a run card where it is periodic, else 0; 0 where it is strained."""
+    from porescale.lbm.boundary.choose import boundaries
+
+    domain = scene["domain"]
+    kinds = (boundaries().get(domain[side]["kind"]) for side in ("left", "bottom"))  # None: since gone
+    x, y = (kind is not None and kind.periodic and not scene.get("cell") for kind in kinds)
+    return domain["width"] * x, domain["height"] * y
 
 
 def _look_of_deck(name: str, deck: dict[str, Any]) -> Look:

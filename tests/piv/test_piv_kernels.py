@@ -267,7 +267,7 @@ def test_sums_over_blocks_are_those_of_their_definition():
     for one, other in ((six, plain[0]), (five, plain[1])):
         np.testing.assert_allclose(one, other, rtol=0, atol=16 * 8 * EPS32 * np.abs(other).max())
     assert six[5, 1, 1] == pytest.approx(float((mask * a * b)[4:8, 4:8].astype(float).sum()), abs=1e-4)
-    mean = 0.5 * (a + b)
+    mean = 0.5 * (a + 1.1 * b)
     g = (8 * (mean[:, 3:-1] - mean[:, 1:-3]) - (mean[:, 4:] - mean[:, :-4])) / 12
     r = (a - 0.1) - 1.1 * (b + 0.2)
     rows, columns = slice(12, 16), slice(12, 16)
@@ -294,11 +294,25 @@ def test_an_update_finds_a_small_shift():
     assert np.abs(found - 0.1).max() > 0.01
 
 
-def _again(a, b, mask):
+def test_an_update_is_the_same_when_the_second_picture_is_dimmer():
+    a, b, mask = deformed(0.1)
+    grid = Grid((48, 48), 16, 8)
+    zero = grid.both(np.zeros(grid.shape), np.zeros(grid.shape))
+    like, dim, untold = (
+        grid.values(fit.solved(grid, zero, _again(a, scale * b, mask, gain), 1e-2)[0])
+        for scale, gain in ((1, 1), (0.5, 2), (0.5, 1))
+    )
+    # Halves and doubles are exact: the same sums.
+    assert np.array_equal(dim, like)
+    # The check that must fail: without the gain half of the light of the first picture is left over as a residual.
+    assert np.abs(untold - like)[1:-1, 1:-1].max() > 0.01
+
+
+def _again(a, b, mask, gain=1.0):
     down, across = a.shape[0] // 4, a.shape[1] // 4
     lanes = np.empty((down, 9, a.shape[1]), np.float32)
     five = np.empty((5, down, across), np.float32)
     known = np.zeros((4, down, across), np.float32)
-    known[2:] = 1
+    known[2], known[3] = gain, 1
     lattice.weighted(a, b, mask, known, np.float32(0.04), 4, lanes, five)
     return fit.Equations(five, five[:3], five[0], np.full((down, across), 16, np.float32))

@@ -114,7 +114,7 @@ def _look(look: Look, first: Snapshot, dot: float) -> dict[str, Any]:
 
     return {
         "grid": look.grid if look.painted(first) is not None else "", "field": quantity(look.field), "cloud": name,
-        "colour": quantity(colour), "walls": look.walls, "dot": dot, "plain": look.plain,
+        "colour": quantity(colour), "walls": look.walls, "dot": dot, "plain": look.plain, "period": list(look.period),
         "shapes": look.shapes, "label": look.label, "title": plain_look.title,
         "kinds": {str(key): list(value) for key, value in look.kinds.items()} if colour else {},
     }  # fmt: skip

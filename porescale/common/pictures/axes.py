@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.patches import Patch
 
+from porescale.common.core.types import AnyArray
 from porescale.common.pictures.arrows import arrows
 from porescale.common.pictures.layout import draw_bar, fit_ticks, scaled
 from porescale.common.pictures.look import (
@@ -23,6 +24,7 @@ from porescale.common.pictures.look import (
     survey,
     time_text,
 )
+from porescale.common.pictures.repeated import discs_again, shifts
 from porescale.common.pictures.shapes import CRACK
 from porescale.common.record.model import Cloud, Snapshot
 
@@ -113,16 +115,18 @@ def _points(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
     """Discs with a rim and a spoke, or dots, all to scale."""
     discs = "radius" in cloud.data
     radius = np.broadcast_to(np.asarray(cloud.data.get("radius", found.dot), float), len(cloud.position))
-    there = np.isfinite(cloud.position).all(axis=1)
-    at, size = cloud.position[there] * factor, 2.0 * radius[there] * factor
+    which, places = discs_again(cloud, found.look)
+    there = np.isfinite(places).all(axis=1)
+    which, at = which[there], places[there] * factor
+    size = 2.0 * radius[which] * factor
     edges = {"edgecolors": RIM, "linewidths": 0.4} if discs else {"edgecolors": "none"}
-    own = found.colours(cloud)[there] / 255
+    own = found.colours(cloud)[which] / 255
     dots = EllipseCollection(
         size, size, 0.0, units="xy", offsets=at, offset_transform=axes.transData, facecolors=own, **edges
     )
     axes.add_collection(dots, autolim=False)
     if discs and "angle" in cloud.data:
-        angle = np.asarray(cloud.data["angle"], float)[there]
+        angle = np.asarray(cloud.data["angle"], float)[which]
         tip = at + 0.4 * size[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
         axes.add_collection(
             LineCollection(list(np.stack((at, tip), axis=1)), colors=RIM, linewidths=0.4), autolim=False
@@ -131,9 +135,15 @@ def _points(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
 
 def _shapes(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
     """Polygons, and segments as wide as they are thick."""
-    at, own = cloud.position * factor, found.colours(cloud) / 255
+    own = found.colours(cloud) / 255
     if "driven" in cloud.data:
         own = np.where(np.asarray(cloud.data["driven"])[:, None] != 0, np.array(rgb(PLATE)) / 255, own)
+    for shift in shifts(cloud, found.look):
+        _bodies(cloud, (cloud.position + shift) * factor, own, axes, factor)
+
+
+def _bodies(cloud: Cloud, at: AnyArray, own: AnyArray, axes: Axes, factor: float) -> None:
+    """Bodies whose points are ``at`` (n, 2), of the axes' unit, in colours ``own`` (n, 3)."""
     if cloud.polygons is not None and len(cloud.polygons[0]) > 1:
         offsets, corners = cloud.polygons
         outlines = [at[corners[first:end]] for first, end in pairwise(offsets.tolist())]

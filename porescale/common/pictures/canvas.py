@@ -6,6 +6,7 @@ import numpy as np
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.arrows import arrows
 from porescale.common.pictures.look import ONE, PAPER, PLATE, RIM, SHIFT, WALL, Survey, magnitude, rgb
+from porescale.common.pictures.repeated import discs_again, shifts
 from porescale.common.pictures.shapes import paint_marks, paint_shapes
 from porescale.common.record.model import Cloud, Grid, Snapshot
 
@@ -42,7 +43,9 @@ class Canvas:
             self._cloud(image, cloud)
         shapes = self.look.shaped(snapshot)
         if shapes is not None:
-            paint_shapes(image, shapes, self.pixels(shapes.position), self.per_x, self.survey.colours(shapes))
+            colours = self.survey.colours(shapes)
+            for shift in shifts(shapes, self.look):
+                paint_shapes(image, shapes, self.pixels(shapes.position + shift), self.per_x, colours)
         self._arrows(image, snapshot)
         lines = self.look.lines(snapshot) if callable(self.look.lines) else self.look.lines
         for ends in lines:
@@ -95,12 +98,13 @@ class Canvas:
 
     def _cloud(self, image: AnyArray, cloud: Cloud) -> None:
         discs = "radius" in cloud.data
-        radius = np.asarray(cloud.data["radius"], float) if discs else np.full(len(cloud.position), self.survey.dot)
-        at = self.pixels(cloud.position)
+        which, places = discs_again(cloud, self.look)
+        radius = np.asarray(cloud.data["radius"], float)[which] if discs else np.full(len(which), self.survey.dot)
+        at = self.pixels(places)
         size = radius * self.per_x if discs else np.maximum(radius * self.per_x, 1.0)
         seen = np.isfinite(at).all(1) & (at > -size[:, None]).all(1)
         seen &= (at < [self.width, self.height] + size[:, None]).all(1)
-        colours = self.survey.colours(cloud)[seen].tolist()
+        colours = self.survey.colours(cloud)[which[seen]].tolist()
         centres, radii = np.rint(at[seen] * ONE).astype(int).tolist(), size[seen]
         rim, rim_colour = np.clip(0.08 * radii, 0.7, 2.0), rgb(RIM)
         whole, inner = (np.rint(it * ONE).astype(int).tolist() for it in (radii, radii - rim))
@@ -110,7 +114,7 @@ class Canvas:
                 cv2.circle(image, centre, outer, rim_colour, -1, cv2.LINE_AA, SHIFT)
             cv2.circle(image, centre, core if edge else outer, colour, -1, cv2.LINE_AA, SHIFT)
         if discs and "angle" in cloud.data:
-            self._spokes(image, at[seen], radii, np.asarray(cloud.data["angle"], float)[seen])
+            self._spokes(image, at[seen], radii, np.asarray(cloud.data["angle"], float)[which[seen]])
 
     def _spokes(self, image: AnyArray, at: AnyArray, radii: AnyArray, angle: AnyArray) -> None:
         """A line from each centre towards the rim shows how a disc has turned."""

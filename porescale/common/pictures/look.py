@@ -47,7 +47,8 @@ class Look:
     and grey as walls are;  walls : cell array holding a solid fraction, painted grey;  lines : segments
     ((x, y), (x, y)) m, or a function of the snapshot;  arrows : velocity arrows across the picture, 0 none, of the
     grid, or of dots;  streamlines : an extra still with them; dot : radius of a dot, m (None: about half the particles'
-    spacing);  view : (left, right, bottom, top), m; size : long side, pixels;  plain : places and times are numbers
+    spacing);  view : (left, right, bottom, top), m;  period : of a box periodic in x, in y, m, 0 where it is not: what
+    reaches over a side is seen at the other, too;  size : long side, pixels;  plain : places and times are numbers
     without units;  density : kg/m³ of the fluid, round_off : share of a length a step, by which velocities and
     pressures are known to be round-off;  title, label (of the field), colour_map, cloud_map.
     """
@@ -68,6 +69,7 @@ class Look:
     streamlines: bool = False
     dot: float | None = None
     view: View | None = None
+    period: tuple[float, float] = (0.0, 0.0)
     size: int = 1000
     title: str = ""
     plain: bool = False

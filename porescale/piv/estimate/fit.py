@@ -1,11 +1,11 @@
 """A displacement field fitted to two pictures at once: Gauss-Newton on the coefficients of cubic splines.
 
 Minimised over all pixels of the fluid is sum w (r - g . d)^2 + s sum |second derivatives of the field|^2, with r = a -
-k b both less their local mean, g the gradient of their mean, w weights that take pixels which show different tracers
-out (Cauchy; Black & Anandan 1996, Comput. Vis. Image Underst. 63, 75), d the update.  A window is a local fit of a
-constant; splines do not average the flow over it, use every pixel once, and carry the field to a solid's rim along its
-own slope (B-splines for displacements: Rueckert et al. 1999, IEEE Trans. Med. Imaging 18, 712; regularised fits to
-tracers: Gesemann et al. 2016, 18th Lisbon Symp.).
+k b both less their local mean, k the ratio of their contrasts, g the gradient of (a + k b)/2, w weights that take
+pixels which show different tracers out (Cauchy; Black & Anandan 1996, Comput. Vis. Image Underst. 63, 75), d the
+update.  A window is a local fit of a constant; splines do not average the flow over it, use every pixel once, and carry
+the field to a solid's rim along its own slope (B-splines for displacements: Rueckert et al. 1999, IEEE Trans. Med.
+Imaging 18, 712; regularised fits to tracers: Gesemann et al. 2016, 18th Lisbon Symp.).
 """
 
 from collections.abc import Iterable

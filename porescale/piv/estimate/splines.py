@@ -60,9 +60,9 @@ def moments(a, b, mask, block, lanes, found):
 def weighted(a, b, mask, known, slack, block, lanes, found):
     """Sums over blocks of w gx gx, w gx gy, w gy gy, w gx r, w gy r, where r = (a - mean a) - k (b - mean b).
 
-    g : gradient of (a + b)/2 by fourth-order differences; the outer two pixels are left out.  w = mask (n^2 + t^2 g^2)/
-    (n^2 + t^2 g^2 + r^2).  known (4, blocks down, across) : mean a, mean b, k, n^2 of each block;  slack : t^2;  lanes
-    (blocks down, 9, columns) : scratch;  found (5, blocks down, across) : overwritten.
+    g : gradient of (a + k b)/2 by fourth-order differences; the outer two pixels are left out.  w = mask (n^2 + t^2
+    g^2)/(n^2 + t^2 g^2 + r^2).  known (4, blocks down, across) : mean a, mean b, k, n^2 of each block;  slack : t^2;
+    lanes (blocks down, 9, columns) : scratch;  found (5, blocks down, across) : overwritten.
     """
     rows, columns = a.shape
     near, far = np.float32(8 / 24), np.float32(1 / 24)
@@ -74,13 +74,14 @@ def weighted(a, b, mask, known, slack, block, lanes, found):
                 own[k, x] = known[k, row, x // block]
         for y in range(max(2, row * block), min(rows - 2, (row + 1) * block)):
             for x in range(columns - 4):  # two to the left of the pixel: an index that never falls needs no check
-                f = near * ((a[y, x + 3] - a[y, x + 1]) + (b[y, x + 3] - b[y, x + 1])) - far * (
-                    (a[y, x + 4] - a[y, x]) + (b[y, x + 4] - b[y, x])
+                gain = own[2, x + 2]
+                f = near * ((a[y, x + 3] - a[y, x + 1]) + gain * (b[y, x + 3] - b[y, x + 1])) - far * (
+                    (a[y, x + 4] - a[y, x]) + gain * (b[y, x + 4] - b[y, x])
                 )
-                g = near * ((a[y + 1, x + 2] - a[y - 1, x + 2]) + (b[y + 1, x + 2] - b[y - 1, x + 2])) - far * (
-                    (a[y + 2, x + 2] - a[y - 2, x + 2]) + (b[y + 2, x + 2] - b[y - 2, x + 2])
+                g = near * ((a[y + 1, x + 2] - a[y - 1, x + 2]) + gain * (b[y + 1, x + 2] - b[y - 1, x + 2])) - far * (
+                    (a[y + 2, x + 2] - a[y - 2, x + 2]) + gain * (b[y + 2, x + 2] - b[y - 2, x + 2])
                 )
-                r = (a[y, x + 2] - own[0, x + 2]) - own[2, x + 2] * (b[y, x + 2] - own[1, x + 2])
+                r = (a[y, x + 2] - own[0, x + 2]) - gain * (b[y, x + 2] - own[1, x + 2])
                 due = own[3, x + 2] + slack * (f * f + g * g)
                 w = mask[y, x + 2] * due / (due + r * r)
                 lane[0, x + 2] += w * f * f

@@ -2,7 +2,7 @@
 
 import { CRACK, GRAIN, RIM, css, fromHex, lengthUnit, paint, paintKinds, tickTexts, ticks } from "./colours.js";
 import { arrows, chains, streamlines } from "./flow.js";
-import { Raster } from "./raster.js";
+import { Raster, images } from "./raster.js";
 import { cellAt } from "./values.js";
 
 const MARGIN = { left: 52, right: 8, top: 8, bottom: 36 };
@@ -16,7 +16,7 @@ export class Picture {
     this.meta = meta;
     this.raster = null;
     this.view = [...meta.view];
-    this.place = { x0: 0, y0: 0, scale: 1 };
+    this.place = { x0: 0, y0: 0, scale: 1, period: meta.look.period };
     this.kept = new Map();
   }
 
@@ -44,7 +44,7 @@ export class Picture {
     const scale = Math.min(width / (right - left), height / (top - bottom));
     const x0 = 0.5 * (width - scale * (right - left)) - scale * left;
     const y0 = 0.5 * (height + scale * (top - bottom)) + scale * bottom;
-    this.place = { x0, y0, scale };
+    this.place = { x0, y0, scale, period: this.meta.look.period };
   }
 
   /** What is in sight, m. */
@@ -156,29 +156,33 @@ export class Picture {
       const thick = frame.parts("clouds", name, "radius")[0];
       const driven = frame.parts("clouds", name, "driven")[0];
       const colour = (k) => (driven?.[k] ? "#c3c8d0" : colours ? css(colours[k]) : GRAIN);
+      let [sx, sy] = [0, 0];
       const path = (points, closed) => {
         this.context.beginPath();
-        points.forEach((k, n) => this.context[n ? "lineTo" : "moveTo"](...this.device(x[k], y[k])));
+        points.forEach((k, n) => this.context[n ? "lineTo" : "moveTo"](...this.device(x[k] + sx, y[k] + sy)));
         if (closed) this.context.closePath();
       };
       const [offsets] = frame.links(name, "offsets");
       const [corners] = frame.links(name, "corners");
       Object.assign(this.context, { lineJoin: "round", lineCap: "round" });
-      for (let k = 0; offsets && k + 1 < offsets.length; k++) {
-        const own = Array.from(corners.subarray(offsets[k], offsets[k + 1]));
-        path(own, true);
-        const width = 2 * (thick?.[own[0]] ?? 0) * this.place.scale;
-        this.stroke(RIM, width + 2);
-        if (width > 1) this.stroke(colour(own[0]), width);
-        this.context.fillStyle = colour(own[0]);
-        this.context.fill();
-      }
-      const [from, to] = frame.links(name, "lines");
-      for (const wider of from ? [2, 0] : []) {
-        for (let k = 0; k < from.length; k++) {
-          path([from[k], to[k]], false);
-          const width = Math.max(1.5, 2 * (thick?.[from[k]] ?? 0) * this.place.scale);
-          this.stroke(wider ? RIM : colour(from[k]), width + wider);
+      const seen = x.length ? Array.from(x).flatMap((_, k) => images(x[k], y[k], thick?.[k] ?? 0, ...this.place.period)) : [];
+      for ([sx, sy] of new Map(seen.map((it) => [String(it), it])).values()) {
+        for (let k = 0; offsets && k + 1 < offsets.length; k++) {
+          const own = Array.from(corners.subarray(offsets[k], offsets[k + 1]));
+          path(own, true);
+          const width = 2 * (thick?.[own[0]] ?? 0) * this.place.scale;
+          this.stroke(RIM, width + 2);
+          if (width > 1) this.stroke(colour(own[0]), width);
+          this.context.fillStyle = colour(own[0]);
+          this.context.fill();
+        }
+        const [from, to] = frame.links(name, "lines");
+        for (const wider of from ? [2, 0] : []) {
+          for (let k = 0; k < from.length; k++) {
+            path([from[k], to[k]], false);
+            const width = Math.max(1.5, 2 * (thick?.[from[k]] ?? 0) * this.place.scale);
+            this.stroke(wider ? RIM : colour(from[k]), width + wider);
+          }
         }
       }
     }

@@ -1,5 +1,14 @@
 /** Cells and discs as pixels, drawn by the processor: a picture costs as much as it has pixels, however many discs. */
 
+const HERE = [[0, 0]];
+
+/** Shifts (m) under which what reaches `size` about a place is seen: none first, then images over periodic sides. */
+export function images(x, y, size, wide, high) {
+  if (!wide && !high) return HERE;
+  const over = (at, length) => [0, ...(length && at < size ? [length] : []), ...(length && at > length - size ? [-length] : [])];
+  return over(x, wide).flatMap((sx) => over(y, high).map((sy) => [sx, sy]));
+}
+
 export class Raster {
   /** A picture of so many pixels: colours, and which disc is where (number + 1, 0 for none). */
   constructor(width, height) {
@@ -36,48 +45,52 @@ export class Raster {
 
   /** Discs in their colours.  x, y, radius : m, one radius for all if it is a number;  colours : one each, or one;
    *  angle : rad, of a mark from the middle to the rim, or null;  rim : its colour, null for none;
-   *  hollow : the rim alone;  owned : whether they can be found by `owner`. */
+   *  hollow : the rim alone;  owned : whether they can be found by `owner`;  place : as of cells, with the period of the
+   *  box in x and y, m, 0 where there is none. */
   discs({ x, y, radius, colours, angle = null, rim = null, hollow = false, owned = true }, place) {
     const { width, height, pixels, owner } = this;
     const one = typeof radius === "number";
     const several = typeof colours !== "number";
+    const [wide, high] = one ? [0, 0] : place.period;
     for (let k = 0; k < x.length; k++) {
-      const cx = place.x0 + x[k] * place.scale - 0.5;
-      const cy = place.y0 - y[k] * place.scale - 0.5;
-      const r = Math.max(0.75, (one ? radius : radius[k]) * place.scale);
-      if (!(cx > -r - 1 && cx < width + r + 1 && cy > -r - 1 && cy < height + r + 1)) continue;
-      const fill = several ? colours[k] : colours;
-      const band = rim === null || r < 2 ? 0 : Math.min(hollow ? 2 : 1.2, 0.3 * r);
-      const inner = r - band;
-      const outside = (r + 0.5) * (r + 0.5);
-      const solid = Math.max(0, inner - 0.5) ** 2;
-      const marked = angle !== null && r >= 4;
-      const cosine = marked ? Math.cos(angle[k]) : 0;
-      const sine = marked ? Math.sin(angle[k]) : 0;
-      const thick = Math.max(0.5, 0.09 * r);
-      const last = Math.min(height - 1, Math.floor(cy + r + 0.5));
-      for (let j = Math.max(0, Math.ceil(cy - r - 0.5)); j <= last; j++) {
-        const dy = j - cy;
-        const reach = Math.sqrt(Math.max(0, outside - dy * dy));
-        const end = Math.min(width - 1, Math.floor(cx + reach));
-        for (let i = Math.max(0, Math.ceil(cx - reach)); i <= end; i++) {
-          const dx = i - cx;
-          const square = dx * dx + dy * dy;
-          if (square >= outside) continue;
-          const at = j * width + i;
-          if (owned && square < r * r) owner[at] = k + 1;
-          if (square < solid) {
-            if (hollow) continue;
-            const along = dx * cosine - dy * sine;
-            const across = dx * sine + dy * cosine;
-            pixels[at] = marked && along > 0.4 * r && Math.abs(across) < thick ? rim : fill;
-            continue;
+      for (const [sx, sy] of images(x[k], y[k], one ? 0 : radius[k], wide, high)) {
+        const cx = place.x0 + (x[k] + sx) * place.scale - 0.5;
+        const cy = place.y0 - (y[k] + sy) * place.scale - 0.5;
+        const r = Math.max(0.75, (one ? radius : radius[k]) * place.scale);
+        if (!(cx > -r - 1 && cx < width + r + 1 && cy > -r - 1 && cy < height + r + 1)) continue;
+        const fill = several ? colours[k] : colours;
+        const band = rim === null || r < 2 ? 0 : Math.min(hollow ? 2 : 1.2, 0.3 * r);
+        const inner = r - band;
+        const outside = (r + 0.5) * (r + 0.5);
+        const solid = Math.max(0, inner - 0.5) ** 2;
+        const marked = angle !== null && r >= 4;
+        const cosine = marked ? Math.cos(angle[k]) : 0;
+        const sine = marked ? Math.sin(angle[k]) : 0;
+        const thick = Math.max(0.5, 0.09 * r);
+        const last = Math.min(height - 1, Math.floor(cy + r + 0.5));
+        for (let j = Math.max(0, Math.ceil(cy - r - 0.5)); j <= last; j++) {
+          const dy = j - cy;
+          const reach = Math.sqrt(Math.max(0, outside - dy * dy));
+          const end = Math.min(width - 1, Math.floor(cx + reach));
+          for (let i = Math.max(0, Math.ceil(cx - reach)); i <= end; i++) {
+            const dx = i - cx;
+            const square = dx * dx + dy * dy;
+            if (square >= outside) continue;
+            const at = j * width + i;
+            if (owned && square < r * r) owner[at] = k + 1;
+            if (square < solid) {
+              if (hollow) continue;
+              const along = dx * cosine - dy * sine;
+              const across = dx * sine + dy * cosine;
+              pixels[at] = marked && along > 0.4 * r && Math.abs(across) < thick ? rim : fill;
+              continue;
+            }
+            const distance = Math.sqrt(square);
+            const cover = Math.min(1, Math.max(0, r + 0.5 - distance));
+            const edge = band ? Math.min(1, Math.max(0, distance - inner + 0.5)) : 0;
+            const own = hollow ? rim : edge ? mixed(fill, rim, edge) : fill;
+            pixels[at] = mixed(pixels[at], own, hollow ? cover * edge : cover);
           }
-          const distance = Math.sqrt(square);
-          const cover = Math.min(1, Math.max(0, r + 0.5 - distance));
-          const edge = band ? Math.min(1, Math.max(0, distance - inner + 0.5)) : 0;
-          const own = hollow ? rim : edge ? mixed(fill, rim, edge) : fill;
-          pixels[at] = mixed(pixels[at], own, hollow ? cover * edge : cover);
         }
       }
     }
