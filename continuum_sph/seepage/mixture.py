@@ -23,6 +23,8 @@ for ρ g in the drag, N/m³;  velocity (m/s) and acceleration (m/s²) less the s
 LINES = 15
 LEAST_ROOM = 0.2  # of a kernel: a particle in a right-angled corner has a quarter
 GROUND = 0.25  # share of grains from which on water counts as among them: loose sand has 0.45, its surface half of that
+INSIDE = 0.9
+"""Share of the kernel in soil from which on water counts as enclosed by it: what runs along its surface is not."""
 LEAST_POROSITY = 0.05  # grains packed more densely leave the water the volume of this porosity
 
 
@@ -109,6 +111,13 @@ def mix_fluxes(fluid, start, split, partner, record, home, pores, h, period_x, p
             record[i, VOLUME] /= porosity
         pores[ROOM, i] = room
         pores[POROSITY, i] = porosity
+
+
+@parallel_kernel
+def find_enclosed(fluid, pores, enclosed):
+    """Overwrites ``enclosed`` (fluid,): whether soil fills what a particle sees before walls but for 1 - INSIDE."""
+    for i in prange(fluid):
+        enclosed[i] = pores[SOIL, i] > INSIDE * pores[ROOM, i]
 
 
 @parallel_kernel

@@ -13,6 +13,7 @@ from continuum_sph.seepage.mixture import (
     ROOM,
     SLIP_X,
     SLIP_Y,
+    find_enclosed,
     gather_soil,
     keep_place_density,
     load_soil,
@@ -52,6 +53,7 @@ class PoreFlow(Flow):
         fluid = self.layer.fluid
         self.pores = np.zeros((LINES, fluid + LANES))
         self.pores[[POROSITY, ROOM]] = 1.0
+        self.enclosed = np.zeros(fluid, np.bool_)
         self.home = self.layer.x.copy()  # of walls: where they stood at the start, grains reach no further
         self.thrust, self.push, self.parts = np.zeros((fluid, 4)), np.zeros((fluid, 2)), np.zeros((4, fluid + LANES))
         self.full, self.excess, self.corrected = np.zeros(self.skeleton.count), np.zeros(fluid), False
@@ -140,6 +142,7 @@ class PoreFlow(Flow):
             self.specific_weight, self.pores, Reach(*how),
         )  # fmt: skip
         mix_fluxes(layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, self.pores, *how)
+        find_enclosed(layer.fluid, self.pores, self.enclosed)
         for face in self.faces:
             prescribe_pressure(
                 face.rows, face.pressure, self.near(smoothing.kind), layer.x, layer.record, layer.pressure, *face.point,

@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_sph.seepage.mixture import LEAST_ROOM, POROSITY, ROOM, SLIP_X, SLIP_Y
+from continuum_sph.seepage.mixture import INSIDE, LEAST_ROOM, POROSITY, ROOM, SLIP_X, SLIP_Y
 from continuum_sph.water.smoothing import SUPPORT
 from continuum_sph.water.state import DIFFUSIVE, VOLUME, P
 from porescale.common.compiled.jit import parallel_kernel, prange
@@ -37,8 +37,6 @@ PACE = 2.0
 ground with 0, 0.7 % with 2 (12 rows, 12 to 60 s)."""
 LET = 0.005
 """Excess that is no sign of an error: sums over a square lattice are up to 1.0016."""
-INSIDE = 0.9
-"""Share of the kernel in soil from which on water counts as in it: what runs along its surface is not to part."""
 BULK = 7  # column of the soil's volume with its pores
 STEPS = 200  # of the integrals of a kernel, which are right to 1e-5 with them
 

@@ -7,10 +7,11 @@ which keeps its forces opposite and its energies in balance.  Where neighbours l
 singular: L goes over to the unit tensor as the smaller eigenvalue of M falls from FULL to NONE.
 
 The gradient of density is taken within the fluid, so walls are no partners in it, and a first row before one has half
-a neighbourhood.  Where diffusion of density takes departures from a linear field (`density`), as among grains, its L
-goes over to the unit tensor within WALLED only: with FULL and NONE it saw a departure in the weight of water itself,
-and moved it in the first rows of ground before each wall, at ±0.02 k; between faces of 8 rows under a gradient of 0.05
-flow was 14 to 21 % too much.
+a neighbourhood.  Where soil encloses water its L goes over to the unit tensor within WALLED only: with FULL and NONE
+diffusion of what departs from a linear field (`density`), as among grains, saw a departure in the weight of water, and
+moved it in the first rows before each wall, at ±0.02 k; between faces of 8 rows under a gradient of 0.05 flow was 14 to
+21 % too much.  In thin water over ground few neighbours are no wall: with WALLED it stood 0.147 m deep on the crest of
+a levee, in place of 0.169.
 
 Water in the open that moves shrinks with L_i (12 to 24 % in four sloshes): plain sums push particles towards gaps twice
 as hard, and lose no volume.  So among grains alone water has L_i (`seepage.mixture.open_gradients`).  Plain sums over a
@@ -28,8 +29,8 @@ from porescale.common.compiled.simd import LANES, gather_rows, reduce_add, sqrt,
 
 NONE, FULL = 0.5, 0.8  # a level surface has 0.49 in its first row and 0.90 in its second
 SPRAY, WALLED = (NONE, FULL), (0.1, 0.25)
-"""The same for the gradient of density, which walls do not continue: where water may splash, and where walls or ground
-enclose it, 0.49 along walls and 0.27 in a corner."""
+"""The same for the gradient of density, which walls do not continue: where water may splash, and where soil encloses
+it, which has 0.49 along walls and 0.27 in a corner."""
 TRACE = 3
 """Column of a layer's matrix with the trace of M."""
 CLUMP = 0.2
@@ -71,18 +72,20 @@ def clumping(ratio):
 
 
 @parallel_kernel
-def neighbourhood_moments(fluid, record, near, properties, matrix, concentration, density, bounds, spacing):
+def neighbourhood_moments(fluid, record, near, properties, matrix, concentration, density, enclosed, spacing):
     """Overwrites, of fluid particles, ``matrix`` (fluid, 4), L and the trace of M;  ``concentration`` (fluid, 2) 1/m,
     Σ {1 + R (W/W(spacing))⁴} V ∇W, which points to where particles are fewest;  ``density`` (fluid, 2) kg/m⁴, gradient
     of density within the fluid, exact for linear fields.  The last two are None where they have no use.
 
-    record: see `state.Layer`;  near, properties: see `bundles`;  bounds: SPRAY or WALLED;  spacing of the particles, m.
+    record: see `state.Layer`;  near, properties: see `bundles`;  enclosed (fluid,): whether soil fills all that a
+    particle sees before walls, or None;  spacing of the particles, m.
     """
     kind, h = kernel_kind(near.kind), near.h
     whole = 1.0 / kernel_value(kind, spacing * (1.0 / h), h)
     for at in prange(fluid):
         i = row(at)
         m, own, c, b = fluid_moments(i, record, near, properties, whole)
+        bounds = SPRAY if enclosed is None or not enclosed[i] else WALLED
         store_density_gradient(density, i, chosen(properties, own, m), b, bounds)
         xx, xy, yy, cx, cy = wall_moments(i, record, near, m, c, whole)
         lxx, lxy, lyy = inverse(xx, xy, yy, NONE, FULL)

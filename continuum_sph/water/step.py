@@ -21,12 +21,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from continuum_sph.water.bundles import Choices, Fluids, Gradients, Neighbours, Walls
 from continuum_sph.water.density import LINEAR, filtered
 from continuum_sph.water.fluids import table
 from continuum_sph.water.image_walls import WallDensities, facing, update_walls, wall_rates
-from continuum_sph.water.kernel_correction import SPRAY, WALLED, neighbourhood_moments
+from continuum_sph.water.kernel_correction import neighbourhood_moments
 from continuum_sph.water.leapfrog import Densities, Motion, Pressing, kick, kick_drift, pressurise
 from continuum_sph.water.no_step import LEAST, no_step
 from continuum_sph.water.parameters import RULES, Law
@@ -70,6 +71,7 @@ class Flow:
         layer.length[:] = self.law.smoothing.length
         self.pairs.adaptive = True
         self.split, self.together = np.zeros(count, np.int64), False
+        self.enclosed: NDArray[np.bool_] | None = None
         self.bounds = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
         self.lower, self.upper = self.bounds
         walls = count - layer.fluid
@@ -230,7 +232,7 @@ class Flow:
             concentration = self.concentration_gradient if law.shifting > 0.0 else None
             neighbourhood_moments(
                 fluid, layer.record, near, self.fluids.properties, layer.matrix, concentration, self.gradients.density,
-                WALLED if law.noise == LINEAR else SPRAY, law.spacing,
+                self.enclosed, law.spacing,
             )  # fmt: skip
         self.sum_pairs(0.5 * step)
         if law.tension > 0.0:
