@@ -6,19 +6,32 @@ from porescale.builders.derive import Derived
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.machine import memory_bytes
-from porescale.common.duration.expected import BUILDING, COMPILING, FINISHING, RECORDING, STEPS, Work
+from porescale.common.duration.expected import (
+    BUILDING,
+    COMPILING,
+    FINISHING,
+    RECORDING,
+    STEPS,
+    Work,
+    threads_of_run,
+)
+from porescale.common.record.schedule import recorded
 from porescale.lbm.lattice import row_length
 
-CELLS_PER_SECOND, COUPLED_CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 60e6, 15e6
-"""Rates that a run is first reckoned with, of plain fluid, of fluid with grains, and of contacts; how this machine
-differs is learnt from its runs."""
+CELLS_PER_SECOND, COUPLED_CELLS_PER_SECOND, DISCS_PER_SECOND = 220e6, 140e6, 25e6
+"""Rates of a thread that a run is first reckoned with, measured on an AMD EPYC of 2.4 GHz: of plain fluid and of fluid
+with grains in numbers of 8 bytes, and of contacts; how this machine differs is learnt from its runs."""
+COVERED = 8e-9
+"""Seconds of a cell about a grain, which the grain may cover."""
 CALLS, COUPLED_CALLS = 5e-6, 45e-6
-"""Seconds of a step that do not depend on its size, without and with coupling (measured on 2400 cells, 31 grains):
-without them a run of a small scene would make every machine look slow."""
-PHASES = {BUILDING: (0.5, 0.0, 2e-3, 0.0), RECORDING: (0.2, 0.05, 1e-5, 1e-6), FINISHING: (6.0, 0.12, 1e-5, 1e-7)}
+"""Seconds of a step of a fluid that do not depend on its size, without and with coupling (measured on 2400 cells, 31
+grains): without them a run of a small scene would make every machine look slow."""
+PHASES = {BUILDING: (0.5, 0.0, 2e-3, 0.0), RECORDING: (0.3, 0.02, 1e-5, 5e-7), FINISHING: (3.0, 0.015, 5e-6, 7e-7)}
 """Nominal seconds of what is no step: once, of each snapshot, and for each disc and each cell in it."""
-KERNELS = 30.0
-"""Nominal seconds of compiling the kernels of fluid or of grains; with both it is twice that."""
+ROW = 5e-3
+"""Nominal seconds of a row of series.csv and of what is measured with it."""
+KERNELS = {"fluid": 6.0, "grains": 25.0, "both": 5.0}
+"""Nominal seconds of compiling the kernels of fluid, of grains, and what else there is with both."""
 SNAPSHOT = 1000.0
 """Bytes of a snapshot besides its numbers."""
 ALWAYS = 2.0**27
@@ -57,9 +70,14 @@ def memory(scene: Scene, derived: Derived) -> float:
         total += 9 * derived.precision * row_length(nx) * (ny + 2)
         if derived.grain_count:
             total += 3 * derived.precision * nx * ny
-    if derived.diameters and derived.scales:
-        total += 8 * derived.grain_count * (math.ceil(derived.diameters[2] / derived.scales.spacing) + 2) ** 2
-    return total
+    return total + 8 * cells_about_grains(derived)
+
+
+def cells_about_grains(derived: Derived) -> int:
+    """Cells that grains may cover, counted for each."""
+    if not (derived.diameters and derived.scales):
+        return 0
+    return derived.grain_count * (math.ceil(derived.diameters[2] / derived.scales.spacing) + 2) ** 2
 
 
 def snapshot_bytes(scene: Scene, derived: Derived) -> float:
@@ -75,23 +93,26 @@ def snapshot_count(end: float, interval: float) -> int:
     return 1 + (math.ceil(end / interval) if math.isfinite(interval) else 1)
 
 
-def step_seconds(derived: Derived) -> float:
+def step_seconds(derived: Derived, threads: int = 1) -> float:
     """Seconds of a model step at the nominal rates."""
     cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
-    if cells and derived.grain_count:
-        return COUPLED_CALLS + cells / COUPLED_CELLS_PER_SECOND + contact_seconds(derived)
-    return CALLS + cells / CELLS_PER_SECOND + contact_seconds(derived)
+    coupled = bool(cells and derived.grain_count)
+    calls, rate = (COUPLED_CALLS, COUPLED_CELLS_PER_SECOND) if coupled else (CALLS * bool(cells), CELLS_PER_SECOND)
+    fluid = cells * derived.precision / 8 / rate + COVERED * cells_about_grains(derived)
+    return calls + (fluid + contact_seconds(derived)) / threads
 
 
 def work(scene: Scene, derived: Derived, gpu: str = "") -> Work:
     """What a run of the scene has to do;  gpu : name of the GPU that steps its fluid, if one does."""
-    cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
+    cells, steps = derived.cells[0] * derived.cells[1] if derived.cells else 0, step_count(scene, derived)
+    there = {"fluid": bool(cells), "grains": bool(derived.grain_count), "both": bool(cells and derived.grain_count)}
+    kernels = sum(seconds for what, seconds in KERNELS.items() if there[what])
     snapshots = snapshot_count(scene.time.end, scene.output.snapshot_interval)
-    kernels = KERNELS * (1 + bool(cells and derived.grain_count))
-    seconds = {COMPILING: kernels, STEPS: step_count(scene, derived) * step_seconds(derived)}
+    seconds = {COMPILING: kernels, STEPS: steps * step_seconds(derived, threads_of_run())}
     for phase, (once, each, disc, cell) in PHASES.items():
         many = 1 if phase == BUILDING else snapshots
         seconds[phase] = once + (each + disc * derived.grain_count + cell * cells) * many
+    seconds[RECORDING] += ROW * recorded(scene.time.end, scene.output.series_interval, steps)
     return Work(scene.name, _kind(derived, gpu), seconds)
 
 

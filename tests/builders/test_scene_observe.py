@@ -155,6 +155,23 @@ def test_a_small_run_does_not_make_the_machine_look_slow():
     assert cost.step_seconds(large) > 10.0 * cost.step_seconds(small)
 
 
+def test_a_step_takes_less_on_more_threads_and_its_calls_do_not():
+    """Of a step, all but its calls is shared; half of the bytes take half of the time."""
+    large = derive(column(fluid__spacing=0.00002, fluid__step=4e-6))
+    one, two = (cost.step_seconds(large, threads) - cost.COUPLED_CALLS for threads in (1, 2))
+    assert one == pytest.approx(2.0 * two, rel=1e-12)
+    single = derive(column(fluid__spacing=0.00002, fluid__step=4e-6, fluid__precision="float32"))
+    nx, ny = large.cells
+    saved = cost.step_seconds(large) - cost.step_seconds(single)
+    assert saved == pytest.approx(0.5 * nx * ny / cost.COUPLED_CELLS_PER_SECOND, rel=1e-9)
+
+
+def test_rows_take_their_time_when_a_run_records():
+    few, many = (column(time__end=1.0, output__series_interval=it) for it in (0.1, 0.01))
+    few, many = (cost.work(it, derive(it)).seconds[RECORDING] for it in (few, many))
+    assert many - few == pytest.approx(90 * cost.ROW, rel=1e-9)  # 101 and 11 rows
+
+
 def test_what_is_no_step_grows_with_snapshots_but_not_as_fast():
     few, many = (column(time__end=1.0, output__snapshot_interval=it) for it in (0.1, 0.1 / 3.0))
     few, many = (cost.work(it, derive(it)).seconds for it in (few, many))

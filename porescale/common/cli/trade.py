@@ -23,7 +23,7 @@ from porescale.common.cli.sweep import (
 )
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
-from porescale.common.studies.sweep import check_points, require_same
+from porescale.common.studies.sweep import check_points, require_folder
 
 if TYPE_CHECKING:
     from porescale.common.studies.parameter_table import Point
@@ -83,7 +83,7 @@ def command(package: Package) -> Callable[..., int]:
         folder = output_folder(out, f"{name}_trade")
         campaign = Campaign(package.module, file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
         enlist(campaign, jobs, scheduler)
-        require_same(package, start, campaign, points)
+        require_folder(package, start, campaign, points)
         ends = {ended.point.name: ended for ended in campaign.all(points, jobs, say)}
         if code := conclude([ends[point.name] for point in truth]):
             say("the reference did not finish: nothing to hold the others against")

@@ -31,7 +31,8 @@ BEGIN = 2.0
 """Seconds until a scene is read and all is imported."""
 LAST, KEPT = 5, 50
 """Runs whose median counts, and runs that are remembered."""
-NAME, KERNEL = "runs.json", ".nbc"
+NAME, KERNEL = "times.json", ".nbc"
+"""The file of runs, named anew when nominal rates change: what runs took is kept over them;  ending of kernels."""
 GUESS = "a guess until this machine has done such a run"
 
 
@@ -88,10 +89,10 @@ def _like(work: Work) -> list[dict[str, Any]]:
     """The runs of the same scene on as many threads; where there is none, on others; and else, of its kind."""
     kind = [run for run in _runs() if run["kind"] == work.kind]
     scene = [run for run in kind if run["scene"] == work.scene]
-    return [run for run in scene if run["threads"] == _threads()] or scene or kind
+    return [run for run in scene if run["threads"] == threads_of_run()] or scene or kind
 
 
-def _threads() -> int:
+def threads_of_run() -> int:
     """Threads of kernels, all cores where none was called yet: numba takes long to import."""
     return threads() if "numba" in sys.modules else cores()
 
@@ -115,7 +116,7 @@ def remember(work: Work, taken: Mapping[str, float], began: Moment) -> None:
     both = [phase for phase in LEARNT if taken.get(phase, 0.0) > 0.0 and work.seconds[phase] > 0.0]
     slower = {phase: taken[phase] / work.seconds[phase] for phase in both}
     now, kernels = moment(), [name for name in USED if name.endswith(KERNEL)] + [f"{it}{KERNEL}" for it in TURNS.kept]
-    run = {"scene": work.scene, "kind": work.kind, "threads": _threads(), "slower": slower,
+    run = {"scene": work.scene, "kind": work.kind, "threads": threads_of_run(), "slower": slower,
            "kernels": list(dict.fromkeys(kernels)), "compiled": now.compiled - began.compiled,
            "compiling": (now.compiling - began.compiling) * share(began, now)}  # fmt: skip
     with contextlib.suppress(OSError):  # no room or no right to write: the next check guesses again

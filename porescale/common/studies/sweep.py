@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 TABLES = 512
 """Tables of run folders that are kept in memory."""
 SAID = 3
-"""Runs of another sweep that are named, at most."""
+"""Runs of other points that are named, at most."""
 ELSEWHERE = "name another folder, or remove what is there"
-"""What helps where runs are in the way of a sweep."""
+"""What helps where runs are in the way."""
 SELDOM = 5.0
 """Files of a sweep are written again after so many times what writing them took."""
 
@@ -96,18 +96,18 @@ def check_points(
 def require_folder(
     program: Program, scene: Path, campaign: Campaign, points: Sequence[Point], words: Words = TYPED
 ) -> None:
-    """InputError where the folder of a sweep holds runs that are none of this ``scene`` at these ``points``."""
+    """InputError where the folder of a campaign holds runs that are none of this ``scene`` at these ``points``."""
     require_alone(campaign, points, words)
     require_same(program, scene, campaign, points)
 
 
 def require_alone(campaign: Campaign, points: Sequence[Point], words: Words) -> None:
-    """InputError where the folder of a sweep holds runs that are none of its ``points``."""
+    """InputError where the folder of a campaign holds runs that are none of its ``points``."""
     names = {point.name for point in points}
     others = sorted(it.parent.name for it in campaign.folder.glob(f"*/{CARD}") if it.parent.name not in names)
     if others:
         more = f" and {len(others) - SAID} more" if len(others) > SAID else ""
-        problem = f"holds runs of another sweep: {' '.join(others[:SAID])}{more}"
+        problem = f"holds runs of other points: {' '.join(others[:SAID])}{more}"
         raise InputError(Fault(words.out, str(campaign.folder), problem, repair=ELSEWHERE))
 
 

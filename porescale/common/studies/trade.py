@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.statistics import Sample
 from porescale.common.studies.parameter_table import Point
 from porescale.common.studies.quantities import Columns, curve, measured
@@ -77,7 +78,7 @@ class Errors:
     _kept: dict[tuple[Path, str], Answer] = field(default_factory=dict)
 
     def answer(self, ended: Ended, quantity: Quantity) -> Answer:
-        """The value of a quantity in a run; KeyError where it has no such column or feature."""
+        """The value of a quantity in a run; InputError where it has no such column."""
         key = (ended.folder, quantity.name)
         if key not in self._kept:
             self._kept[key] = self._answer(ended, quantity)
@@ -88,9 +89,14 @@ class Errors:
             at = None if quantity.at == "end" else float(str(quantity.at))
             return None, np.asarray(self.features[quantity.feature](ended.folder, at), float).ravel()
         columns = self.tables(ended.folder, quantity.file)
-        if quantity.is_curve:
-            return curve(columns, quantity.row())
-        return None, np.array([measured(columns, quantity.row())])
+        try:
+            if quantity.is_curve:
+                return curve(columns, quantity.row())
+            return None, np.array([measured(columns, quantity.row())])
+        except KeyError as error:
+            missing, problem = error.args[0] if columns else quantity.column, f"is not in {quantity.file}.csv"
+            allowed, where = ", ".join(columns), f"quantity {quantity.name!r}"
+            raise InputError(Fault("column", missing, problem, allowed=allowed, file=where)) from None
 
     def error(self, ended: Ended, repeat: int, quantity: Quantity) -> float:
         """How far a run is off in one quantity; infinite where it has no answer."""

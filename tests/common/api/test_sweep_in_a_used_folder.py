@@ -1,4 +1,5 @@
-"""A sweep in a folder that holds runs already: its own go on, those of another sweep or scene are refused."""
+"""A sweep or study in a folder that holds runs already: its own go on, those of other points or another scene are
+refused."""
 
 import json
 import subprocess
@@ -62,13 +63,13 @@ def test_runs_of_another_sweep_are_refused_and_nothing_is_written(swept):
     scene, out = swept
     here = whole(out)
     line = refused(scene, {"contact.friction": [0.3]}, out)[0]
-    assert line.startswith(f"out = '{out}': holds runs of another sweep: density=2500 density=2600")
+    assert line.startswith(f"out = '{out}': holds runs of other points: density=2500 density=2600")
     assert line.endswith("; name another folder, or remove what is there")
     assert "density=2600" in refused(scene, {"grains.density": [2500]}, out)[0]
     words = ["porescale", "sweep", str(scene), "--vary", "contact.friction=0.3", "--out", str(out)]
     done = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, timeout=120)
     assert done.returncode == 2
-    assert done.stderr.startswith(f"--out = '{out}': holds runs of another sweep: density=2500 ")
+    assert done.stderr.startswith(f"--out = '{out}': holds runs of other points: density=2500 ")
     assert len(done.stderr.splitlines()) == 1
     assert whole(out) == here
 
@@ -89,3 +90,41 @@ def test_runs_of_the_scene_before_a_change_are_not_taken_for_those_of_today(swep
     assert whole(out) == here
     changed.write_text(SCENE + "# the check that fails: the same scene in another file\n")
     porescale.sweep(changed, points, out)
+
+
+PLAN = """
+[[quantity]]
+name = "fall"
+column = "kinetic energy of grains (J/m)"
+exact = 1e-6
+scale = 1e-6
+"""
+KNOB = """
+[[knob]]
+name = "density"
+"""
+
+
+def test_runs_of_an_earlier_plan_are_refused_and_those_of_a_longer_one_go_on(tmp_path):
+    """A study of two points; then of one of them, which is refused; then of both and a third."""
+    (tmp_path / "fall.toml").write_text(SCENE)
+    out = tmp_path / "out"
+
+    def study(*densities):
+        """The study of a plan with these points."""
+        points = [f'[[knob.point]]\nlabel = "{it}"\nsettings = {{ grains.density = {it} }}\n' for it in densities]
+        (tmp_path / "trade.toml").write_text(PLAN + KNOB + "".join(points))
+        words = ["porescale", "study", "trade", str(tmp_path / "fall.toml"), "--out", str(out)]
+        return subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, timeout=300)
+
+    assert study(2500, 2600).returncode == 0
+    here = whole(out)
+    shorter = study(2500)
+    assert shorter.returncode == 2
+    assert shorter.stderr.startswith(f"--out = '{out / 'runs'}': holds runs of other points: ")
+    assert shorter.stderr.count("\n") == 1
+    assert whole(out) == here
+    assert study(2500, 2600, 2700).returncode == 0
+    runs = {it: it.read_bytes() for it in out.glob("runs/*/card.json")}
+    assert len(runs) == 3
+    assert all(here[it] == runs[it] for it in runs if it in here)  # none was run again

@@ -89,10 +89,10 @@ def test_a_run_of_the_same_scene_says_more_than_one_of_its_kind_and_another_kind
 
 def test_a_run_on_as_many_threads_says_more_than_one_on_others(monkeypatch):
     for threads, slower in ((1, 8.0), (2, 5.0)):
-        monkeypatch.setattr(module, "_threads", lambda threads=threads: threads)
+        monkeypatch.setattr(module, "threads_of_run", lambda threads=threads: threads)
         ran(monkeypatch, slower=slower)
     for threads, slower in ((1, 8.0), (2, 5.0), (4, 6.5)):
-        monkeypatch.setattr(module, "_threads", lambda threads=threads: threads)
+        monkeypatch.setattr(module, "threads_of_run", lambda threads=threads: threads)
         assert expected(work()).seconds[STEPS] == pytest.approx(10.0 * slower, rel=1e-12)
 
 

@@ -349,6 +349,16 @@ def test_a_curve_is_read_from_long_and_from_wide_tables():
         curve(wide, {"column": "g at *", "at": "end"})
 
 
+def test_a_column_that_no_run_has_is_said_with_those_that_there_are(tmp_path):
+    wrong = ("y (m)", "z (m)", "series"), ("height at", "depth at", "profile"), ('"profile"', '"x"', "x")
+    for old, new, file in wrong:
+        made = plan(tmp_path, PLAN.replace(old, new))
+        errors = Errors(made, lambda folder, name: {} if name == "x" else tables(folder, name), {}, [ended("1 2")])
+        with pytest.raises(InputError, match=rf"^quantity '\w+': column = '.*': is not in {file}\.csv") as caught:
+            errors.trade("k", "1", Point("1 2", ()), [ended("1 2")])
+        assert ("(allowed: time (s), " in str(caught.value)) == (file != "x")
+
+
 def test_a_number_is_read_as_the_row_says():
     columns = {"time (s)": np.array([0.0, 1.0, 2.0, 3.0]), "y (m)": np.array([8.0, 6.0, 3.0, 4.0])}
     row = {"column": "y (m)", "at": 0.5}
