@@ -78,7 +78,7 @@ def periods(scene: dict[str, Any]) -> tuple[float, float]:
     from porescale.lbm.boundary.choose import boundaries
 
     domain = scene["domain"]
-    kinds = (boundaries().get(domain[side]["kind"]) for side in ("left", "bottom"))  # None: since gone
+    kinds = (boundaries().get(domain.get(side, {}).get("kind")) for side in ("left", "bottom"))  # None: since gone
     x, y = (kind is not None and kind.periodic and not scene.get("cell") for kind in kinds)
     return domain["width"] * x, domain["height"] * y
 

@@ -14,7 +14,7 @@ from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.eos.printed import PrintedGas, printed_gas
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.image_walls import STEEPEST, facing, image_velocity
-from continuum_sph.water.kernel_correction import inverse
+from continuum_sph.water.kernel_correction import FULL, NONE, inverse
 from continuum_sph.water.smoothing import WENDLAND, kernel_slope
 from continuum_sph.water.step import Flow
 from continuum_sph.water.viscosity import artificial, central, laminar, mutual
@@ -85,9 +85,9 @@ def test_corrected_gradients_of_linear_fields_are_exact_in_disorder():
 
 
 def test_correction_fades_where_neighbours_lie_on_one_side():
-    assert inverse(1.0, 0.0, 1.0) == (1.0, 0.0, 1.0)
-    assert inverse(0.9, 0.0, 0.2) == (1.0, 0.0, 1.0)
-    xx, xy, yy = inverse(0.95, 0.05, 0.9)
+    assert inverse(1.0, 0.0, 1.0, NONE, FULL) == (1.0, 0.0, 1.0)
+    assert inverse(0.9, 0.0, 0.2, NONE, FULL) == (1.0, 0.0, 1.0)
+    xx, xy, yy = inverse(0.95, 0.05, 0.9, NONE, FULL)
     assert np.array([[xx, xy], [xy, yy]]) @ [[0.95, 0.05], [0.05, 0.9]] == pytest.approx(np.eye(2), abs=4 * eps)
 
 
