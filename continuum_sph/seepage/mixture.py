@@ -24,7 +24,8 @@ LINES = 15
 LEAST_ROOM = 0.2  # of a kernel: a particle in a right-angled corner has a quarter
 GROUND = 0.25  # share of grains from which on water counts as among them: loose sand has 0.45, its surface half of that
 INSIDE = 0.9
-"""Share of the kernel in soil from which on water counts as enclosed by it: what runs along its surface is not."""
+"""Share of the kernel in soil from which on water counts as enclosed by it: what runs along its surface is not to part
+(`volume_excess`), nor to be held for walled in (`water.kernel_correction`)."""
 LEAST_POROSITY = 0.05  # grains packed more densely leave the water the volume of this porosity
 
 

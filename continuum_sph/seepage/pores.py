@@ -103,7 +103,7 @@ class PoreFlow(Flow):
         pile = (self.pairs.at, self.pairs.bottom, self.pairs.half) if isinstance(self.pairs, CutPairList) else None
         room = room_before(Edges(*self.edges_at(soil.x), pile), soil.x, law.spacing, law.smoothing.length)
         fill_about_soil(layer.fluid, *rows, layer.record, layer.material, room, self.full)
-        excess_about_water(layer.fluid, *rows, soil.burden, layer.material, self.pores, self.full, self.excess)
+        excess_about_water(layer.fluid, *rows, soil.burden, layer.material, self.enclosed, self.full, self.excess)
         self.corrected = bool(self.excess.any())
 
     def edges_at(self, x: Floats) -> tuple[Floats, Floats]:

@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_sph.seepage.mixture import INSIDE, LEAST_ROOM, POROSITY, ROOM, SLIP_X, SLIP_Y
+from continuum_sph.seepage.mixture import LEAST_ROOM, POROSITY, SLIP_X, SLIP_Y
 from continuum_sph.water.smoothing import SUPPORT
 from continuum_sph.water.state import DIFFUSIVE, VOLUME, P
 from porescale.common.compiled.jit import parallel_kernel, prange
@@ -58,22 +58,20 @@ def fill_about_soil(fluid, near, other, weight, record, material, room, full):
 
 
 @parallel_kernel
-def excess_about_water(fluid, near, soil, weight, burden, material, pores, full, excess):
-    """Overwrites ``excess`` (fluid,): e of particles, of air 0;  full (s,): of `fill_about_soil`.
+def excess_about_water(fluid, near, soil, weight, burden, material, enclosed, full, excess):
+    """Overwrites ``excess`` (fluid,): e of particles, of air and where soil does not enclose them 0;  full (s,): of
+    `fill_about_soil`.
 
     near, soil, weight: rows of the overlap, soil numbered from ``fluid`` on;  burden (s, 8): see `skeleton.show_soil`;
-    material (fluid…,): 0 is water;  pores: see `mixture`.
+    material (fluid…,): 0 is water;  enclosed (fluid,): of `mixture.find_enclosed`.
     """
     for i in prange(fluid):
         total = -LET
-        around = 0.0
-        if material[i] == 0:
+        if enclosed[i] and material[i] == 0:
             for k in range(near[i], near[i + 1]):
                 s = soil[k] - fluid
-                share = burden[s, BULK] * weight[k]
-                around += share
-                total += share * full[s]
-        excess[i] = max(0.0, total) if around > INSIDE * pores[ROOM, i] else 0.0
+                total += burden[s, BULK] * weight[k] * full[s]
+        excess[i] = max(0.0, total)
 
 
 @parallel_kernel

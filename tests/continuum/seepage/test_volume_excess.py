@@ -7,11 +7,10 @@ import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.mixture import LEAST_ROOM, LINES, POROSITY, SLIP_X, SLIP_Y
+from continuum_sph.seepage.mixture import INSIDE, LEAST_ROOM, LINES, POROSITY, SLIP_X, SLIP_Y, SOIL, find_enclosed
 from continuum_sph.seepage.overlap import Overlap, overlap_weights
 from continuum_sph.seepage.volume_excess import (
     BULK,
-    INSIDE,
     LET,
     PACE,
     Edges,
@@ -45,7 +44,11 @@ def found(x, volume, material, soil_x, bulk, room):
     record[:, VOLUME], burden[:, BULK] = volume, bulk
     full, excess, pores = np.zeros(s), np.full(n, np.nan), np.ones((LINES, n))
     fill_about_soil(n, start, partner, weight, record, material, room, full)
-    excess_about_water(n, start, partner, weight, burden, material, pores, full, excess)
+    own, rows = np.repeat(np.arange(n), np.diff(start[: n + 1])), slice(start[n])
+    pores[SOIL] = np.bincount(own, burden[partner[rows] - n, BULK] * weight[rows], n)
+    enclosed = np.zeros(n, np.bool_)
+    find_enclosed(n, pores, enclosed)
+    excess_about_water(n, start, partner, weight, burden, material, enclosed, full, excess)
     return excess
 
 
