@@ -18,7 +18,7 @@ from continuum_sph.builders.reports.soil_report import (
     report_watched,
     warn_of_steep_faces,
 )
-from continuum_sph.builders.reports.time_report import report_run
+from continuum_sph.builders.reports.time_report import MOVING_SOIL, OPENING, PORE_WATER, report_run, step_seconds
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.sections import Scene
@@ -31,8 +31,6 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.schema.names import names_of
 
-RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
-OPEN_RATE = 1.9e6  # the same of water in the open: 3 200 particles of a pond over 64 of held soil
 KIND = "soil and its water"
 """Of what runs are made, under which their times are kept; "soil and water" were estimates without open water."""
 BYTES = 770  # per particle of water and walls, lists included: 3 200 of a pond
@@ -116,10 +114,12 @@ def cost(scene: Scene, out: Report, law: Law, step: float, there: Counts) -> Non
     out.row("memory", (BYTES * (fluid + walls) + of_soil * there.soil) / 2**20, "MiB")
     if there.waiting:
         out.row("particles that wait", there.waiting, "", "for reservoirs to let them in")
-    # Pores are full, now or later: what else there is of water is in the open.
-    seconds = 2 * there.soil / RATE + max(0, fluid - there.soil) / OPEN_RATE
-    particles = there.soil + fluid
-    report_run(out, scene, KIND, particles, steps, particles / seconds)
+    # Half of what waits is in, taken over a run.
+    parts = [(PORE_WATER, there.soil + there.fluid + 0.5 * there.waiting)]
+    if not soil_section(scene).held:
+        parts.append((MOVING_SOIL, there.soil))
+    openings = len(scene.face) + len(scene.reservoir) + (scene.pile is not None)
+    report_run(out, scene, KIND, there.soil + fluid, steps, step_seconds(*parts) + OPENING * openings)
     size = 1000.0 + SNAPSHOT * (there.soil + there.fluid)
     report_output(out, scene.time.end, scene.output, round(steps), size)
 

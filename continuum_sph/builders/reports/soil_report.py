@@ -6,7 +6,7 @@ import numpy as np
 
 from continuum_sph.builders.parts.soil import material_of, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.watched import watched_rows
-from continuum_sph.builders.reports.time_report import report_run
+from continuum_sph.builders.reports.time_report import SOIL, STAGE, report_run, step_seconds
 from continuum_sph.scene.material_file import VISCOSITY, Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection
@@ -15,7 +15,6 @@ from continuum_sph.soil.parameters import RULES
 from porescale.common.api.report import Report, report_output
 from porescale.common.core.constants import GRAVITY
 
-RATE = 1.5e6  # particle-steps per second and thread, measured on the two-core machine of the benchmarks, rounded down
 SNAPSHOT = 80  # per particle of a snapshot on disk, about
 BYTES = 900  # per particle: state, record, and about 27 partners in two lists
 STEEPEST, FEWEST = math.radians(75.0), 4
@@ -25,10 +24,10 @@ SOFTEST = 1e-3
 """Strain under its own weight above which soil is so soft that its shape is not the scene's."""
 
 
-def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Report:
+def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> Report:
     """Resolution, stiffness, strength, steps and cost; warns of soil too soft for its weight.
 
-    bound : on the step, s;  more : what else a particle costs in a step, s.
+    bound : on the step, s;  stages : of the flow of water under suction in a step.
     """
     section, law = soil_section(scene), soil_law(scene)
     material, spacing = material_of(section), law.spacing
@@ -68,8 +67,8 @@ def soil_report(scene: Scene, bound: float = math.inf, more: float = 0.0) -> Rep
     steps = scene.time.end / min(step, bound)
     out.row("steps", round(steps))
     out.row("memory", BYTES * count / 2**20, "MiB")
-    rate = 1.0 / (1.0 / RATE + more)
-    report_run(out, scene, "soil with suction" if more else "soil", count, steps, rate)
+    seconds = step_seconds((SOIL, count)) + stages * step_seconds((STAGE, count))
+    report_run(out, scene, "soil with suction" if stages else "soil", count, steps, seconds)
     report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
     if strain > 10.0 * SOFTEST:

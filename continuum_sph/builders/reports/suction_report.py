@@ -15,7 +15,6 @@ from porescale.common.core.constants import GRAVITY
 FROM_EARTHS = 0.01  # of gravity: less is in no permeability that is measured
 HALF = 0.5
 HALVES = 2  # of a step, in each of which water flows so many stages
-STAGES = 2.4e6  # particle-stages of the flow a second and thread, measured like the rate of soil
 
 
 def suction_report(scene: Scene) -> Report:
@@ -30,7 +29,7 @@ def suction_report(scene: Scene) -> Report:
     # the fastest wave that the lattice has: 8/spacing² of D = k K_w/(n rho g), about
     longest = SAFE * porosity * law.weight * scene.numerics.spacing**2 / (4.0 * most * law.stiffness)
     stages = max(1.0, 0.5 * (math.sqrt(1.0 + 8.0 * step / longest) - 1.0))
-    out = soil_report(scene, step, HALVES * stages / STAGES)
+    out = soil_report(scene, step, HALVES * stages)
     out.heading("suction")
     fringe = float(law.suction(HALF))
     out.row("capillary height", fringe, "m", "where S_e is a half, at rest over water")

@@ -3,7 +3,13 @@
 import math
 
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
-from continuum_sph.builders.reports.time_report import report_run
+from continuum_sph.builders.reports.time_report import (
+    SECOND_FLUID,
+    WATER,
+    WATER_WITH_MORE,
+    report_run,
+    step_seconds,
+)
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.parameters import RULES, Law
@@ -12,10 +18,6 @@ from porescale.common.api.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
 
 MACH_WARNED, MACH_REFUSED = 0.1, 0.3
-# Particle-steps per second and thread, walls included, on the two-core machine of the benchmarks, rounded down: columns
-# of 2 000 and 20 000 particles do 14e6 and more, a second fluid takes 4 % of it; with corrected gradients or shifting
-# 5e6 to 9e6, 4.3e6 with XSPH and lengths of their own besides; with surface tension 8e6, without walls 5e6
-RATE, RATE_OF_MORE = 8e6, 4e6
 SNAPSHOT = 60  # per particle of a snapshot on disk, about
 BYTES = 560  # per particle, walls included: 420 to 500 in plain columns, the small ones most, 560 with all choices
 
@@ -87,8 +89,9 @@ def water_report(scene: Scene, count: int | None = None) -> Report:
         out.row("steps", round(steps))
         out.row("memory", BYTES * (water + walls) / 2**20, "MiB")
         more = law.corrected or law.shifting > 0.0 or law.tension > 0.0
-        kind, rate = ("water with more", RATE_OF_MORE) if more else ("water", RATE)
-        report_run(out, scene, kind, water + walls, steps, rate)
+        kind, pace = ("water with more", WATER_WITH_MORE) if more else ("water", WATER)
+        besides = [(SECOND_FLUID, water)] if more and scene.inclusion else []
+        report_run(out, scene, kind, water + walls, steps, step_seconds((pace, water), *besides))
         report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * water)
     _warn(scene, mach, out)
     return out

@@ -31,7 +31,7 @@ BEGIN = 2.0
 """Seconds until a scene is read and all is imported."""
 LAST, KEPT = 5, 50
 """Runs whose median counts, and runs that are remembered."""
-NAME, KERNEL = "times.json", ".nbc"
+NAME, KERNEL = "times2.json", ".nbc"
 """The file of runs, named anew when nominal rates change: what runs took is kept over them;  ending of kernels."""
 GUESS = "a guess until this machine has done such a run"
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.report import report
-from continuum_sph.builders.reports.seepage_report import OPEN_RATE, RATE, bare_exit
+from continuum_sph.builders.reports.seepage_report import bare_exit
+from continuum_sph.builders.reports.time_report import PORE_WATER, step_seconds
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.look import look_of_scene
 from continuum_sph.scene.sections import Scene
@@ -61,7 +62,7 @@ def test_the_time_of_a_run_counts_the_open_water_of_a_pond():
     for given, soil, fluid in ((pond, 8, 240), (ground, 8, 80)):
         seconds = report(given).work.seconds[STEPS] / rows(given)["steps"]
         # the number of steps is rounded in its row
-        assert seconds == pytest.approx(2.0 * soil / RATE + (fluid - soil) / OPEN_RATE, rel=1e-3)
+        assert seconds == pytest.approx(step_seconds((PORE_WATER, soil + fluid)), rel=1e-3)
     assert rows(pond)["memory"] > 1.5 * rows(ground)["memory"]
 
 

@@ -5,8 +5,10 @@ import pytest
 
 from continuum_sph.builders.parts.held_soil import HeldSoilPart
 from continuum_sph.builders.parts.mixture import MixturePart, WetSoilPart
+from continuum_sph.builders.parts.pore_water import water_counts
+from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.report import report
-from continuum_sph.builders.reports.seepage_report import OPEN_RATE, RATE
+from continuum_sph.builders.reports.time_report import OPENING, PORE_WATER, step_seconds
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.skeleton import Frame
@@ -149,7 +151,8 @@ def test_check_expects_the_time_of_the_steps_that_held_ground_takes(tmp_path, mo
     model = Simulation(given)
     rows = {row.name: row.value for row in report(given).groups["steps"]}
     steps, soil = given.time.end / model.flow.next_step, model.flow.water.skeleton.count
-    step = 2.0 * soil / RATE + (model.flow.water.layer.fluid - soil) / OPEN_RATE
+    river = water_counts(given, soil_particles(given)[0])
+    step = step_seconds((PORE_WATER, soil + river[0] + 0.5 * river[1])) + OPENING
     # The water at the floor lies half a spacing deeper than its particles: (γ - 1)/2 of g/c² of 0.025 m is 0.12 %.
     assert float(rows["of it steps"]) == pytest.approx(step * steps, rel=0.0012)
 
