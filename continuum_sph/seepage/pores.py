@@ -145,8 +145,8 @@ class PoreFlow(Flow):
         find_enclosed(layer.fluid, self.pores, self.enclosed)
         for face in self.faces:
             prescribe_pressure(
-                face.rows, face.pressure, self.near(smoothing.kind), layer.x, layer.record, layer.pressure, *face.point,
-                *face.normal,
+                face.columns, face.pressure, face.heights, self.near(smoothing.kind), layer.x, layer.record,
+                layer.pressure, *face.point, *face.normal,
             )  # fmt: skip
             continue_in_corners(
                 face.corners, self.near(smoothing.kind), layer.x, layer.v, layer.record, layer.pressure,

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.face import FaceSection
 from continuum_sph.seepage import PoreFlow, PressureFace
+from continuum_sph.seepage.pressure_face import in_columns
 from continuum_sph.water.state import VX, VY
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
@@ -30,7 +31,8 @@ def pressure_face(
     own = (beyond < 0.0) & (along > max(start, 0.0)) & (along < min(end, size[axis]))
     ends = (beyond < 0.0) & (((along < 0.0) & (start <= 0.0)) | ((along > size[axis]) & (end >= size[axis])))
     point, normal = ((0.0, at), (0.0, inward)) if axis == 0 else ((at, 0.0), (inward, 0.0))
-    face = PressureFace(walls[own], point, normal, np.zeros(int(own.sum())), walls[ends])
+    columns = in_columns(walls[own], x, normal)
+    face = PressureFace(columns, point, normal, np.zeros(columns.shape), walls[ends])
     face.hydrostatic(x, section.table[0][1], weight)
     return face
 
@@ -46,12 +48,12 @@ class FacePart(Part):
         self.names, self.weight = names_of(sections, "face"), weight
         self.rising = [(face, it) for face, it in zip(flow.faces, sections, strict=True) if len(it.table) > 1]
         self.faces, self.flow, self.spacing = flow.faces, flow, spacing
-        self.outer = [face.rows[self._depth(face, flow.home) < spacing] for face in self.faces]
+        self.outer = [face.columns[self._depth(face, flow.home) < spacing] for face in self.faces]
 
     @staticmethod
     def _depth(face: PressureFace, x: Floats) -> Floats:
-        """Depth (m) behind the face of its wall particles at ``x`` (n, 2) m."""
-        depth: Floats = (np.array(face.point) - x[face.rows]) @ np.array(face.normal)
+        """Depths (m, layers), m, behind the face of its wall particles at ``x`` (n, 2) m."""
+        depth: Floats = (np.array(face.point) - x[face.columns]) @ np.array(face.normal)
         return depth
 
     def passed(self, face: PressureFace) -> float:

@@ -181,7 +181,7 @@ def lift(part: float, column: Permeameter = BOILING) -> tuple[float, float, floa
         taken += both.next_step * float(held.sum()) / width
         speed = float(grains @ soil.v[:soils, 1] / grains.sum())
         halfway = speed if passed < 0.5 * FARTHEST * spacing else halfway
-        passed = float((layer.x[face.rows, 1] - both.water.home[face.rows, 1]).mean())
+        passed = float((layer.x[face.columns, 1] - both.water.home[face.columns, 1]).mean())
     gained = float(water @ layer.v[:n, 1] + grains @ soil.v[:soils, 1]) / width - taken
     return gained / ((column.base(part * column.critical) - weight) * both.time), halfway, speed
 

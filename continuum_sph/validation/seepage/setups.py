@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from continuum_sph.seepage import Frame, PoreFlow, PressureFace, Resistance, Seepage, Skeleton, skeleton_of
+from continuum_sph.seepage.pressure_face import in_columns
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.soil import SoilFlow
 from continuum_sph.water.eos.liquid import Tait
@@ -83,7 +84,8 @@ def water_in(
         below = face == "floor"
         rows = n + np.flatnonzero(walls[:, 1] < 0.0 if below else walls[:, 1] > height)
         normal = (0.0, 1.0 if below else -1.0)
-        flow.faces.append(PressureFace(rows, (0.0, 0.0 if below else height), normal, np.full(len(rows), held)))
+        columns = in_columns(rows, layer.x, normal)
+        flow.faces.append(PressureFace(columns, (0.0, 0.0 if below else height), normal, np.full(columns.shape, held)))
     whole = resistance.porosity * WATER + (1.0 - resistance.porosity) * grains
     both = Seepage(flow, ground, modulus, whole if modulus else np.inf, load=load)
     both.start()

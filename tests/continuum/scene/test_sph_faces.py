@@ -125,7 +125,7 @@ def test_room_at_a_face_goes_along_with_the_water_and_nothing_beside_it_does():
     x = np.array([[0.1, 0.2], [0.1, 0.05], [0.1, 0.35], [0.4, 0.3]])
     for edge, own in zip(water.edges_at(x), (water.lower, water.upper), strict=True):
         np.testing.assert_array_equal(edge, np.repeat(own[:, None], 4, axis=1))  # nothing has passed yet
-    one, other = (face.rows for face in water.faces)
+    one, other = (face.columns for face in water.faces)
     water.layer.x[one] += [0.01, 0.0]
     water.layer.x[other] += [0.0, 0.02]
     lower, upper = water.edges_at(x)
