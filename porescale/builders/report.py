@@ -46,7 +46,7 @@ def report(scene: Scene) -> Report:
     derived = derive(scene)
     require_memory(scene, derived)
     require_clear_packing(scene, derived)
-    require_first_bonds(scene, derived)
+    of_bonds = require_first_bonds(scene, derived)
     out = Report(scene.title or "scene")
     _parts(scene, out)
     if derived.scales:
@@ -70,7 +70,7 @@ def report(scene: Scene) -> Report:
     if scene.fluid and scene.grains:
         _regime(scene.grains.density, math.hypot(*scene.gravity), derived, out)
     _cost(scene, derived, out)
-    for warning in derived.warnings:
+    for warning in (*derived.warnings, *of_bonds):
         out.warn(warning)
     return out
 

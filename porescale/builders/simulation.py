@@ -77,9 +77,17 @@ class Simulation(ShownSimulation):
 
         cloud = self.part(GrainCloud)
         if cloud is None:
-            raise absent("positions", "grains", "add [grains], or read self.fields()")
+            raise absent("positions", *self._instead_of_grains())
         position, velocity = cloud.motion()
         return position[: cloud.count], velocity[: cloud.count]
+
+    def _instead_of_grains(self) -> tuple[str, str]:
+        """What a scene without grains has, in words, and where its places are had."""
+        if self.frames:
+            count = len(self.frames)
+            there = f"grains, but {count} {'body' if count == 1 else 'bodies'} of segments"
+            return there, 'read self.snapshot().clouds["frames"].position, the corners, (n, 2) m'
+        return "grains", "add [grains], or read self.fields()" if self.fluid else "add [grains]"
 
     @property
     def radii(self) -> Floats:

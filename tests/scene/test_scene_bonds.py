@@ -10,13 +10,13 @@ from porescale.builders.build import build
 from porescale.builders.derive import derive
 from porescale.builders.initial.rock import rock_discs
 from porescale.builders.report import report
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, Unstable
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.prepare.rock import rock as made_by_hand
 from porescale.output.frame_pictures import cracks
 from porescale.output.rock_pictures import drawn, write_rock_picture
 from tests.reference.scenes import refusals
-from tests.reference.scenes_of_grains import assert_same_bits, framed, resumed
+from tests.reference.scenes_of_grains import assert_same_bits, framed, loose, resumed
 
 STIFFNESS, OVERLAP = 2e5, 8e-7
 SIDE = 1e-3
@@ -200,3 +200,50 @@ def test_a_rocks_picture_counts_the_breaks_of_its_table(tmp_path):
     assert "(kPa)" in stress.get_ylabel()
     assert sum(bar.get_height() for bar in counts.patches) == 5.0
     assert "5 in all" in counts.get_ylabel()
+
+
+def pair(stiffness: float, bonds: dict[str, Any] | None, *, pulled: bool = False) -> Scene:
+    """Two discs of 20 mm, 0.39 kg/m reduced, that overlap by 10 nm, or drift apart at 20 mm/s."""
+    speed, discs = 0.01 if pulled else 0.0, []
+    for side in (-1, 1):
+        discs.append({"x": 0.05 + side * (0.01 - 5e-9), "y": 0.05, "diameter": 0.02, "velocity": [side * speed, 0.0]})
+    return loose(
+        *discs, domain={"width": 0.1, "height": 0.1}, gravity=[0, 0], bonds=bonds, output__energy=True,
+        contact={"stiffness": stiffness, "restitution": 1.0},
+    )  # fmt: skip
+
+
+def test_bonds_that_the_steps_do_not_resolve_are_warned_of_before_the_first_one():
+    # 50 N/m on a contact of 1e5 N/m * 10 nm = 1 mN/m.  In a step of 0.62 ms they move by 50 * dt^2/0.39 = 50 um.
+    said = [it for it in report(pair(1e5, {"tension": 50.0})).warnings if "bond" in it]
+    assert len(said) == 1
+    assert said[0].startswith("a bond of 50 N/m is 5e+04 times what its contact carries")
+    # What is said: the break makes energy, of order b^2 dt^2/m, out of nothing.
+    simulation = build(pair(1e5, {"tension": 50.0}, pulled=True))
+    before = simulation.series()["kinetic energy of grains (J/m)"]
+    while simulation.step < 200 and simulation.series()["broken bonds ()"] == 0.0:
+        simulation.advance(1)
+    row = simulation.series()
+    assert row["broken bonds ()"] == 1.0
+    assert row["kinetic energy of grains (J/m)"] > 1.5 * before
+    assert abs(row["residual (J/m)"]) > 0.5 * before
+
+
+def test_bonds_that_press_bodies_into_each_other_are_warned_of():
+    # 50 N/m on 2e4 N/m: 2 b/k = 5 mm, half of the radius; on 5e4 2 mm, a fifth.
+    said = [it for it in report(pair(2e4, {"tension": 50.0})).warnings if "into each other" in it]
+    assert len(said) == 1
+    assert (
+        "by up to 0.005 m, and beyond 0.003 m, 0.3 of the radius, a run stops: contacts 1.8 times as stiff" in said[0]
+    )
+    simulation = build(pair(2e4, {"tension": 50.0}))
+    simulation.advance(6)  # half of a period, pi (m/k)^(1/2) = 14 ms with 0.39 kg/m, is 10 steps of 1.4 ms
+    with pytest.raises(Unstable, match="overlap with grain 1 over radius"):
+        simulation.check()
+    assert not [it for it in report(pair(5e4, {"tension": 50.0})).warnings if "into each other" in it]
+
+
+@pytest.mark.parametrize("bonds", [{}, {"factor": 1.5}, {"factor": 5.0}])
+def test_bonds_that_are_about_as_strong_as_their_contacts_are_not_warned_of(bonds):  # the twin that must fail
+    assert not [it for it in report(pair(1e5, bonds)).warnings if "bond" in it]
+    assert not [it for it in report(wall(bonds=bonds)).warnings if "bond" in it]

@@ -3,8 +3,9 @@
 A probe takes the straight line through the particles about it (moving least squares with W as the weight), which is
 exact for linear fields; beside fewer than three it takes their mean, and without any it has no value.
 
-A level is where a column of water is half full: the highest y at which Σ V_i w(y - y_i)/breadth over the particles in a
-strip falls to one half, w the cubic spline on a line.  A drop of one particle is no surface.
+A level is where a column of water is half full: the highest y at which Σ V_i b_i w(y - y_i)/breadth over the particles
+in a strip falls to one half, w the cubic spline on a line and b_i the share of a particle's width in the strip.  A drop
+of one particle is no surface.
 """
 
 from dataclasses import dataclass
@@ -19,7 +20,6 @@ from porescale.common.record.part import Part
 from porescale.common.schema.names import names_of
 
 SUPPORT = 2.0  # of the kernels, in smoothing lengths
-IN_THE_OPEN = 1 / 6  # of the grains that ground has: water about which there are fewer is in the open
 THIN = 1e-3  # of a mean square distance: particles on a line give no slope across it
 
 
@@ -58,20 +58,24 @@ def interpolate(at: tuple[float, float], cloud: MeasuredWater) -> Floats:
     return value
 
 
-def strip(level: LevelSection, cloud: MeasuredWater) -> tuple[NDArray[np.bool_], float]:
-    """Which particles (n,) lie in the strip of ``level``, and its breadth within the tank, m."""
+def strip(level: LevelSection, cloud: MeasuredWater) -> tuple[Floats, float]:
+    """Share (n,) of the width of each particle, a spacing, that lies in the strip of ``level``, and the strip's breadth
+    within the tank, m.  A side of the tank cuts no particle."""
     half = 0.5 * (level.breadth if level.breadth is not None else 4.0 * cloud.spacing)
     left, right = max(0.0, level.x - half), min(cloud.width, level.x + half)
-    inside: NDArray[np.bool_] = (cloud.x[:, 0] >= left) & (cloud.x[:, 0] <= right)
-    return inside, right - left
+    begin, end = left if left > 0.0 else -np.inf, right if right < cloud.width else np.inf
+    x, radius = cloud.x[:, 0], 0.5 * cloud.spacing
+    inside = np.minimum(x + radius, end) - np.maximum(x - radius, begin)
+    return np.clip(inside / cloud.spacing, 0.0, 1.0), right - left
 
 
 def surface_height(level: LevelSection, cloud: MeasuredWater) -> float:
     """Height (m) of the free surface in the strip of ``level``; 0 where there is no water."""
-    inside, breadth = strip(level, cloud)
+    part, breadth = strip(level, cloud)
+    inside = part > 0.0
     if not inside.any() or breadth <= 0.0:
         return 0.0
-    y, share = cloud.x[inside, 1], cloud.volume[inside] / breadth
+    y, share = cloud.x[inside, 1], (part * cloud.volume)[inside] / breadth
     h = cloud.length
     heights = np.arange(max(0.0, float(y.min())), float(y.max()) + SUPPORT * h + cloud.spacing, 0.1 * cloud.spacing)
     q = np.abs(heights[:, None] - y) / h
@@ -85,19 +89,16 @@ def surface_height(level: LevelSection, cloud: MeasuredWater) -> float:
 
 
 def discharge(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float:
-    """Flow of water to the right (m²/s) through a section: Σ V_i s_i u_i/breadth over the strip of ``level``;
+    """Flow of water to the right (m²/s) through a section: Σ V_i b_i s_i u_i/breadth over the strip of ``level``;
     ``share`` (n,): s, of each particle's volume that is water."""
-    inside, breadth = strip(level, cloud)
-    return float((cloud.volume * share * cloud.v[:, 0])[inside].sum()) / breadth if breadth > 0.0 else 0.0
+    part, breadth = strip(level, cloud)
+    return float(part @ (cloud.volume * share * cloud.v[:, 0])) / breadth if breadth > 0.0 else 0.0
 
 
-def open_depth(level: LevelSection, cloud: MeasuredWater, share: Floats, least: float) -> float:
-    """Depth (m) of the water in the strip of ``level`` that lies in no soil: its volume over the breadth.
-
-    share (n,): of each particle's volume that is water, as smoothed; there is soil where it is ``least`` or less.
-    """
-    inside, breadth = strip(level, cloud)
-    return float(cloud.volume[inside & (share > least)].sum()) / breadth if breadth > 0.0 else 0.0
+def open_depth(level: LevelSection, cloud: MeasuredWater, in_soil: NDArray[np.bool_]) -> float:
+    """Depth (m) of the water in the strip of ``level`` that is not ``in_soil`` (n,): its volume over the breadth."""
+    part, breadth = strip(level, cloud)
+    return float((part * cloud.volume)[~in_soil].sum()) / breadth if breadth > 0.0 else 0.0
 
 
 def mean_row(name: str, probe: ProbeSection, cloud: MeasuredWater, water: Floats) -> dict[str, float]:

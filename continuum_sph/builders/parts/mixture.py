@@ -12,7 +12,6 @@ from continuum_sph.builders.parts.air import AirPart
 from continuum_sph.builders.parts.faces import FacePart
 from continuum_sph.builders.parts.held_soil import HeldSoilPart
 from continuum_sph.builders.parts.instruments import (
-    IN_THE_OPEN,
     MeasuredWater,
     discharge,
     level_row,
@@ -159,7 +158,6 @@ class PoreInstruments(Part):
 
     def __init__(self, scene: Scene, flow: PoreFlow) -> None:
         self.probes, self.levels, self.flow, self.width = scene.probe, scene.level, flow, scene.inner[0]
-        self.open = 1.0 - IN_THE_OPEN * (1.0 - flow.resistance.porosity)
 
     def row(self) -> dict[str, float]:
         """Mass of the water in pores.
@@ -167,15 +165,22 @@ class PoreInstruments(Part):
         water in pores (kg/m) : mass of the water that lies in soil, about which there are more than half of its grains
         """
         flow, n = self.flow, self.flow.layer.fluid
-        # Kernels smear the grains over two smoothing lengths: at the surface of ground half of them are about water.
-        inside = (flow.porosity < 0.5 * (1.0 + flow.resistance.porosity)) & (flow.layer.material[:n] == 0)
+        inside = self._in_soil() & (flow.layer.material[:n] == 0)
         return {"water in pores (kg/m)": float(flow.layer.mass[:n][inside].sum())}
+
+    def _in_soil(self) -> NDArray[np.bool_]:
+        """About which particles of the water (n,) there are more than half of the grains that ground has.
+
+        The kernel that smears them is even: at the plane of a flat surface half of its weight lies in ground, with half
+        of the grains; half a spacing higher it has a quarter, half a spacing lower three quarters.
+        """
+        return self.flow.porosity < 0.5 * (1.0 + self.flow.resistance.porosity)
 
     def tables(self) -> dict[str, dict[str, float]]:
         """A row of each table of the instruments.
 
         NAME discharge (m2/s) : flow of water to the right through the section of the level
-        NAME open depth (m) : depth of the water in the strip of the level that lies in no soil, less the row next to it
+        NAME open depth (m) : depth of the water in the strip of the level that lies in no soil, to half a spacing
         """
         flow, layer, law, n = self.flow, self.flow.layer, self.flow.law, self.flow.layer.fluid
         there = (layer.mass[:n] > 0.0) & (layer.material[:n] != GAS)
@@ -190,10 +195,11 @@ class PoreInstruments(Part):
         if self.levels:
             found["levels"] = level_row(self.levels, cloud)
         found[NAME] = phreatic_row(cloud, flow.skeleton.x)
+        in_soil = self._in_soil()[there]
         for name, level in zip(names_of(self.levels, "level"), self.levels, strict=True):
             through = discharge(level, cloud, flow.porosity[there])
             found["levels"][f"{name} discharge (m2/s)"] = through
-            found["levels"][f"{name} open depth (m)"] = open_depth(level, cloud, flow.porosity[there], self.open)
+            found["levels"][f"{name} open depth (m)"] = open_depth(level, cloud, in_soil)
         return found
 
 

@@ -64,7 +64,8 @@ def read_points(path: Path) -> list[Point]:
 
 
 def varied(options: Sequence[str]) -> list[Point]:
-    """Every combination of ``key=a,b,c`` options; InputError where one is not of that form, or a key is given twice.
+    """Every combination of ``key=a,b,c`` options; InputError where one is not of that form, or a key, or a value
+    of it, is given twice.
 
     Commas inside brackets or quotes belong to the value: ``domain.left=[0,1],[0,2]``.
     """
@@ -75,6 +76,9 @@ def varied(options: Sequence[str]) -> list[Point]:
         if not equals or not key.strip() or not all(parts):
             repair = "write it as --vary contact.friction=0.2,0.5"
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
+        twice = next((part for k, part in enumerate(parts) if part in parts[:k]), None)
+        if twice is not None:
+            raise InputError(Fault(key.strip(), twice, "is given twice", repair="leave one out", file="--vary"))
         lists.append([f"{key.strip()}={part}" for part in parts])
     _once([settings[0] for settings in lists], "--vary")
     return named(combinations(lists))

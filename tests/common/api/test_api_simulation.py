@@ -17,6 +17,7 @@ from tests.common.api.small import build, scene_of
 from tests.fingerprints.digest import fingerprint
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, column, dry, refusals, table, water, write
+from tests.reference.scenes_of_grains import framed
 
 END = 0.004
 
@@ -108,6 +109,17 @@ def test_grains_that_there_are_not_are_refused():
     simulation = build(water())
     for name in ("positions", "velocities", "radii", "spins"):
         assert "this scene has no grains" in refusals(lambda name=name: getattr(simulation, name))[0]
+
+
+def test_where_the_corners_of_polygons_are_had_is_said_where_there_are_no_grains():
+    square = {"corners": [[0, 0], [1e-3, 0], [1e-3, 1e-3], [0, 1e-3]], "at": [[2e-3, 2e-3]], "thickness": 5e-5}
+    simulation = build(framed(polygon=[square]))
+    for name in ("positions", "velocities", "radii", "masses", "spins"):
+        said = refusals(lambda name=name: getattr(simulation, name))[0]
+        assert said.startswith("positions: this scene has no grains, but 1 body of segments; read self.snapshot().")
+        assert "fields" not in said  # a scene without fluid has none
+    corners = simulation.snapshot().clouds["frames"].position[:, :2]
+    np.testing.assert_allclose(np.ptp(corners, axis=0), 1e-3, rtol=1e-9)  # as they are given, to round-off of places
 
 
 def test_a_run_from_python_is_that_of_the_command(tmp_path):

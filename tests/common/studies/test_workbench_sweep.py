@@ -97,6 +97,13 @@ def test_a_key_that_is_given_twice_is_refused():
             wrong()
 
 
+def test_a_value_that_is_given_twice_is_refused():
+    # It was run twice, to the same bits, as NAME and NAME-2.
+    with pytest.raises(InputError, match=r"^--vary: a = '?2'?: is given twice; leave one out$"):
+        varied(["a=1,2,2"])
+    assert len(varied(["a=1,2", "b=1,2"])) == 4  # of another key it is another point
+
+
 def test_names_are_folders_anywhere_and_differ():
     given = [Point("", ('a.b="x/../y"',)), *(Point(name, ()) for name in ("../up", "Same", "same", ".."))]
     assert [point.name for point in named(given)] == ["b=x_.._y", "up", "Same", "same-2", "point"]

@@ -5,7 +5,16 @@ import csv
 import numpy as np
 import pytest
 
-from continuum_sph.builders.parts.instruments import MeasuredWater, interpolate, level_row, probe_row, surface_height
+from continuum_sph.builders.parts.instruments import (
+    MeasuredWater,
+    discharge,
+    interpolate,
+    level_row,
+    open_depth,
+    probe_row,
+    surface_height,
+)
+from continuum_sph.builders.parts.mixture import PoreInstruments
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.scene.sections import Scene
@@ -65,6 +74,57 @@ def test_a_drop_is_no_surface():
 
 def test_levels_do_not_see_water_beside_their_strip():  # the twin that must fail
     assert surface_height(LevelSection(x=2.0, breadth=0.2), cloud(width=1.0)) == 0.0
+
+
+@pytest.mark.parametrize("breadth", [0.3, 1.0, 1.5, 4.0, 6.2])
+@pytest.mark.parametrize("x", [0.0, 0.01, 0.5, 0.525, 0.54, 0.99])
+def test_a_strip_holds_the_same_depth_of_water_wherever_it_lies_and_however_narrow_it_is(x, breadth):
+    at = square_lattice((0.0, 0.0), (1.0, 0.5), SPACING)
+    one = np.ones(len(at))
+    water = MeasuredWater(at, SPACING**2 * one, one, np.outer(one, [0.3, 0.1]), 0.065, SPACING, 1.0)
+    level = LevelSection(x=x, breadth=breadth * SPACING)
+    # sums of some 60 numbers; the strip's ends are known to eps of x, a share eps x/breadth of it
+    assert open_depth(level, water, one < 0.0) == pytest.approx(0.5, rel=200 * eps)
+    assert discharge(level, water, 0.4 * one) == pytest.approx(0.4 * 0.3 * 0.5, rel=200 * eps)
+    # Of an even lattice's rows: one half is where the rows below are half of all, at the edge of the topmost row.
+    assert surface_height(level, water) == pytest.approx(0.5, abs=0.02 * SPACING)
+
+
+def test_whole_columns_of_particles_are_not_what_a_strip_holds():  # the twin that must fail
+    at = square_lattice((0.0, 0.0), (1.0, 0.5), SPACING)
+    held = np.sum(np.abs(at[:, 0] - 0.525) <= 2.0 * SPACING + 1e-9) * SPACING**2 / (4.0 * SPACING)
+    assert held == pytest.approx(0.5 * 5 / 4, rel=1e-12)
+
+
+def still(x, held=True):
+    """Instruments of still water 0.4 m deep over flat ground, with a level at ``x``."""
+    ground = {"held": True} if held else {"stiffness": 4e5, "elastic": True}
+    given = {
+        "tank": {"width": 1.0, "height": 1.0, "lid": False},
+        "water": {"sound_speed": SOUND, "column": [{"width": 1.0, "height": 0.8}]},
+        "soil": {**ground, "permeability": 0.01, "body": [{"outline": [[0, 0], [1, 0], [1, 0.4], [0, 0.4]]}]},
+        "level": [{"x": x}], "probe": [],
+    }  # fmt: skip
+    return Simulation(validate(Scene, {**SCENE, **given})).part(PoreInstruments)
+
+
+SOUND = 30.0  # m/s
+
+
+@pytest.mark.parametrize("held", [True, False])
+@pytest.mark.parametrize("x", [0.0, 0.5, 0.525])
+def test_the_open_depth_of_still_water_over_flat_ground_is_its_depth(x, held):
+    # Rows lie beside the plane of the ground, not in it; what is left is what the water's weight presses it together
+    # by, g times its depth over c^2.
+    depth = still(x, held).tables()["levels"]["level 0 open depth (m)"]
+    assert depth == pytest.approx(0.4, rel=9.81 * 0.4 / SOUND**2)
+
+
+def test_water_about_which_there_are_few_grains_is_not_all_that_is_open():  # the twin that must fail
+    flow = still(0.5).flow
+    volume, n = flow.layer.mass[: flow.layer.fluid] / (flow.porosity * flow.layer.density), flow.resistance.porosity
+    few = volume[flow.porosity > 1.0 - (1.0 - n) / 6.0].sum() / 1.0
+    assert few == pytest.approx(0.4 - SPACING, rel=0.01)  # the first row over flat ground has a quarter of its grains
 
 
 SCENE = {
