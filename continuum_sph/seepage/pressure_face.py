@@ -32,7 +32,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.water.bundles import Neighbours, image
+from continuum_sph.water.bundles import Neighbours, image, row
 from continuum_sph.water.pressure_walls import wall_mean
 from continuum_sph.water.rates_walls import corrected
 from continuum_sph.water.smoothing import kernel_slope, kernel_value
@@ -202,7 +202,7 @@ def push_of(columns, shift, near, x, record, matrix, nx, ny, push):
     near: see `water.bundles`;  x (n, 2) m;  record: see `Layer`, volumes are read;  matrix (fluid, 4): L, or None.
     """
     for c in prange(columns.shape[0]):
-        push[c] = column_push(columns, c, shift, near, x, record, matrix, nx, ny)
+        push[c] = column_push(columns, row(c), shift, near, x, record, matrix, nx, ny)
 
 
 @parallel_kernel
@@ -214,7 +214,7 @@ def follow(columns, whole, slope, near, x, record, matrix, nx, ny):
     The rest: of `push_of`.
     """
     for c in prange(columns.shape[0]):
-        push = column_push(columns, c, 0.0, near, x, record, matrix, nx, ny)
+        push = column_push(columns, row(c), 0.0, near, x, record, matrix, nx, ny)
         if push > 0.0:
             way = (whole[c] - push) / slope[c]
             for layer in range(columns.shape[1]):

@@ -16,7 +16,7 @@ compression positive.
 import numpy as np
 
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, VX, VY, X, Y
-from continuum_sph.water.bundles import image, inverse_period, nearest_image
+from continuum_sph.water.bundles import image, inverse_period, nearest_image, row
 from continuum_sph.water.smoothing import slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_rows, reduce_add, sqrt, zeros
@@ -51,7 +51,8 @@ def velocity_gradients(soil, record, facing, matrix, near, corrected, step):
     record, facing: see `state.Soil`; walls count where soil lies before them;  near: see `water.bundles`;  corrected:
     else K = 1;  step, s.
     """
-    for i in prange(soil):
+    for at in prange(soil):
+        i = row(at)
         m, g = soil_gradient_sums(i, record, near)
         m, g = with_walls(i, record, facing, near, m, g)
         (mxx, mxy, myy), (gxx, gxy, gyx, gyy) = m, g

@@ -56,7 +56,7 @@ from continuum_sph.soil.state import (
     Y,
 )
 from continuum_sph.soil.stress import CROWD, EXCESS, GROWN, XX, XY, YY, ZZ
-from continuum_sph.water.bundles import image, inverse_period, nearest_image
+from continuum_sph.water.bundles import image, inverse_period, nearest_image, row
 from continuum_sph.water.smoothing import kernel_kind, kernel_value, slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.compiled.simd import (
@@ -97,7 +97,8 @@ def accelerate(soil, record, facing, force, stress, acceleration, spread, drift,
     record, facing: see `state.Soil`;  force (soil, 2) N/m of other layers;  stress (n, 4) Pa;  near: see
     `water.bundles`;  choices: see `Choices`.
     """
-    for i in prange(soil):
+    for at in prange(soil):
+        i = row(at)
         pushed, diffused, grown, excess, crowd = soil_forces(i, record, stress, near, choices)
         integral = 2.0 * np.pi * kernel_value(kernel_kind(near.kind), 0.0, near.h)
         ax, ay, ux, uy, excess = with_wall_forces(i, record, facing, stress, near, choices, pushed, excess)

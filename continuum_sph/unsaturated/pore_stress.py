@@ -19,7 +19,7 @@ from continuum_sph.soil.state import X as PLACE_X
 from continuum_sph.soil.state import Y as PLACE_Y
 from continuum_sph.unsaturated.outside import KIND, LEVEL, PX, PY
 from continuum_sph.unsaturated.richards import EFFECTIVE, PRESSURE
-from continuum_sph.water.bundles import image
+from continuum_sph.water.bundles import image, row
 from continuum_sph.water.smoothing import kernel_slope, kernel_value
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 
@@ -96,7 +96,8 @@ def pore_forces(soil, record, facing, matrix, near, pore, around, weight, force)
 
     matrix (soil, 5): K of `soil.gradient`;  pore (n,), around (soil, 2): of `pore_pressures`;  the rest: see there.
     """
-    for i in prange(soil):
+    for at in prange(soil):
+        i = row(at)
         fx = 0.0
         fy = 0.0
         outer = outer_pressure(i, soil, record, near, weight, around)

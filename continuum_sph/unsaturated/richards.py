@@ -33,7 +33,7 @@ from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.unsaturated.conductivity import CONNECTIVITY, relative_permeability
 from continuum_sph.unsaturated.outside import KIND, LEVEL, PX, PY, Outer
 from continuum_sph.unsaturated.retention import VanGenuchten, effective_saturation, pressure_and_slope
-from continuum_sph.water.bundles import Neighbours, image
+from continuum_sph.water.bundles import Neighbours, image, row
 from continuum_sph.water.smoothing import kernel_slope
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.core.types import Floats
@@ -141,7 +141,8 @@ def flow_rates(state, permeability, near, outer, weight, outer_weight, propertie
     """
     fastest = 0.0
     quickest = 0.0
-    for i in prange(permeability.shape[0]):
+    for at in prange(permeability.shape[0]):
+        i = row(at)
         within = 0.0
         conductance = 0.0
         head = state[i, HEAD]

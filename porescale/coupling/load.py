@@ -7,6 +7,8 @@ Each row of a body's patch is summed when the lattice row has been collided and 
 order afterwards, so that loads do not depend on threads.
 """
 
+import numpy as np
+
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, prefetch
 from porescale.common.compiled.simd import choose, fma, load_eight, ramp_eight, reduce_add
 from porescale.coupling.coverage.rows import (
@@ -150,7 +152,7 @@ def add_rows(corner, height, ny, periodic_y, row_load, load, inside):
             add_rows_of(n, corner, height, (ny, periodic_y), row_load, load, inside)
     else:
         for n in prange(load.shape[0]):
-            add_rows_of(n, corner, height, (ny, periodic_y), row_load, load, inside)
+            add_rows_of(np.int64(n), corner, height, (ny, periodic_y), row_load, load, inside)
 
 
 @inline

@@ -63,11 +63,11 @@ def held_area_of(n, patches, periodic, shape, half_rate, weighting):
 def covered_area(patches, periodic, shape, area):
     """Sum of the solid fractions of every body in a box of shape (ny, nx), into area (n,); periodic: along x, y."""
     for n in prange(area.shape[0]):
-        area[n] = covered_area_of(n, patches, periodic, shape)
+        area[n] = covered_area_of(np.int64(n), patches, periodic, shape)
 
 
 @parallel_kernel
 def held_area(patches, periodic, shape, half_rate, weighting, area):
     """The same with B (1 + (1 - B) s/2) in place of the fraction;  half_rate: s/2;  weighting: law of B."""
     for n in prange(area.shape[0]):
-        area[n] = held_area_of(n, patches, periodic, shape, half_rate, weighting)
+        area[n] = held_area_of(np.int64(n), patches, periodic, shape, half_rate, weighting)

@@ -1,5 +1,7 @@
 """Sweeps over the lattice: the slots of each row, passed to a row kernel.  See lattice.py for the in-place pattern."""
 
+import numpy as np
+
 from porescale.common.compiled.jit import inline, parallel_kernel, prange, unchecked_view
 from porescale.lbm.collision.law import collide_row, row_law
 
@@ -50,4 +52,4 @@ def sweep(f, parity, n, law):
     too.  One kernel for both kinds of step: compiled in half the time.
     """
     for y in prange(1, f.shape[1] - 1):
-        collide_row(slots(f, n, y, parity), 0, n, row_law(y - 1, law))
+        collide_row(slots(f, n, y, parity), np.int64(0), n, row_law(y - 1, law))

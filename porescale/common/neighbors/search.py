@@ -129,7 +129,7 @@ def search_row(write, i, x, reach, ordered, order, cell_start, grid, criterion, 
     # Cells of one row follow each other in the sorted order, so a row of the window is one stretch, or two
     # where it runs over a periodic end.
     inside = min(width, columns - first_column)
-    found = 0
+    found = np.int64(0)  # not 0 alone, for which note_stretch is compiled once more
     needed = 0
     if tilt != 0.0 and height == rows:  # a row may hold both images of a point: all of it
         first_column, width = 0, columns
@@ -182,13 +182,14 @@ def count_parallel(start, row, x, reach, ordered, order, cell_start, grid, crite
     """Row lengths over threads, summed in order: overwrites ``start`` (n + 1,); returns what `fill_serial` does."""
     n = x.shape[0]
     longest = 0
-    for i in prange(n):
+    for number in prange(n):
+        i = np.int64(number)
         found, needed = search_row(False, i, x, reach, ordered, order, cell_start, grid, criterion, row)
         longest = max(longest, needed)
         start[i + 1] = found
     start[0] = 0
-    for i in range(n):
-        start[i + 1] += start[i]
+    for k in range(n):
+        start[k + 1] += start[k]
     return start[n], longest
 
 
@@ -196,7 +197,8 @@ def count_parallel(start, row, x, reach, ordered, order, cell_start, grid, crite
 def fill_parallel(start, partner, scratch, length, x, reach, ordered, order, cell_start, grid, criterion):
     """Rows over threads into the places that ``start`` (n + 1,) names: overwrites ``partner`` and ``scratch``, of which
     each thread has ``length`` entries, as many as `count_parallel` says."""
-    for i in prange(x.shape[0]):
+    for number in prange(x.shape[0]):
+        i = np.int64(number)
         row = unchecked_view(scratch, thread() * length, length)
         found, _ = search_row(True, i, x, reach, ordered, order, cell_start, grid, criterion, row)
         store_sorted(row, found, partner, start[i])

@@ -11,6 +11,8 @@ line: a disc d cells wide needs 2 (d + 2) of them.  Derived from G being the are
 
 import math
 
+import numpy as np
+
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange
 from porescale.common.compiled.simd import (
     EIGHT,
@@ -214,4 +216,4 @@ def cover(centre, radius, patches, lines):
             cover_part(part, centre, radius, patches, lines)
     else:
         for part in prange(lines.shape[0]):
-            cover_part(part, centre, radius, patches, lines)
+            cover_part(np.int64(part), centre, radius, patches, lines)

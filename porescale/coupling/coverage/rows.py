@@ -139,7 +139,7 @@ def list_bands(patches, periodic_y, bands):
         start[b] = total
         total += here
     if is_few(patches):
-        list_part(patches, periodic_y, bands, 0, count)
+        list_part(patches, periodic_y, bands, np.int64(0), count)
     else:
         for piece in prange(LISTING):
             list_part(patches, periodic_y, bands, piece * count // LISTING, (piece + 1) * count // LISTING)
@@ -334,8 +334,8 @@ def rasterize(bands, patches, motion, periodic_x, scratch, extent, out):
     """
     nx = out.shape[2]
     wide = nx + 2 * BLOCK
-    for band in prange(bands.start.shape[0] - 1):
-        mine = thread()
+    for number in prange(bands.start.shape[0] - 1):
+        band, mine = np.int64(number), thread()
         reach = unchecked_view(extent[mine], 0, extent.shape[1])
         rasterize_band(band, bands, patches, motion, periodic_x, views_of(scratch, mine), reach, scratch.shape[1] > 3)
         first = band * bands.height

@@ -21,10 +21,13 @@ NOTHING = np.nan
 """Put down for a far pair that does not touch: adding a zero could turn -0.0 into 0.0."""
 ONE = np.uint64(1)
 """Of a number that is not negative by its type: an index that might be is tested at each use."""
-DX, DY, DU, DV, SPIN_I, SPIN_J, RADIUS_I, RADIUS_J, MASS_I, MASS_J, SPRING, ROLL, FX, FY, MOMENT_I, MOMENT_J = range(16)
+(
+    DX, DY, DU, DV, SPIN_I, SPIN_J, RADIUS_I, RADIUS_J, MASS_I, MASS_J, SPRING, ROLL, FX, FY, MOMENT_I, MOMENT_J,
+) = np.arange(16)  # fmt: skip
 """Columns of a contact: the way from i to j m, velocity of i relative to j m/s, spins rad/s, radii m, masses kg/m and
-springs m;  then what it answers, force on i N/m and torques on both N m/m."""
-ONE_DISC, OTHER, PAIR = range(3)
+springs m;  then what it answers, force on i N/m and torques on both N m/m.  numba compiles what takes plain numbers of
+Python for each of them."""
+ONE_DISC, OTHER, PAIR = np.arange(3)
 """Columns of whole numbers: both discs, and the place in the list."""
 
 
@@ -179,7 +182,7 @@ def block_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbers, 
     gx, gy, turn_i, turn_j = answered(numbers)
     dx, dy, springs, rolls = column(numbers, DX), column(numbers, DY), column(numbers, SPRING), column(numbers, ROLL)
     one, other, listed = column(which, ONE_DISC), column(which, OTHER), column(which, PAIR)
-    i, k, now = first, 0, first
+    i, k, now = first, np.int64(0), first
     fx, fy, moment = 0.0, 0.0, 0.0
     while i < last:
         i, k, count = answer_batch(i, k, last, far_start, False, d, pairs, law, dt, cell, numbers, which)
@@ -209,7 +212,7 @@ def block_far_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbe
     one, listed = column(which, ONE_DISC), column(which, PAIR)
     for q in range(far_start[first], far_start[last]):
         far[q, 0] = NOTHING
-    i, k = first, 0
+    i, k = first, np.int64(0)
     while i < last:
         i, k, count = answer_batch(i, k, last, far_start, True, d, pairs, law, dt, cell, numbers, which)
         for m in range(count):
@@ -227,4 +230,4 @@ def pair_forces(d, pairs, law, dt, cell, numbers, which):
     numbers, which: one thread's ``scratch``.  Adds to ``d.force`` N/m and ``d.torque`` N m/m in the order of the list;
     overwrites ``pairs.history`` m.  Not checked: two centres in one place give nan, which Grains.check reports.
     """
-    block_forces(0, d.torque.shape[0], None, None, d, pairs, law, dt, cell, numbers, which)
+    block_forces(np.int64(0), d.torque.shape[0], None, None, d, pairs, law, dt, cell, numbers, which)

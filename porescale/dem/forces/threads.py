@@ -163,7 +163,7 @@ def surfaces_of_block(b, d, s, law, dt, sweep):
     """Contacts of the discs of block b with all surfaces ``s``, Surfaces; overwrites sweep.partial[b]."""
     first, last = b * BLOCK, min((b + 1) * BLOCK, d.radius.shape[0])
     load, walls, plates = sweep.partial[b], s.walls.shape[0], s.plates.shape[0]
-    add_near_walls(d, s.walls, s.wall_laws, s.wall_spring, load, 0, sweep.near, first, last, law, dt)
+    add_near_walls(d, s.walls, s.wall_laws, s.wall_spring, load, np.int64(0), sweep.near, first, last, law, dt)
     if plates > 0:
         add_plate_forces(d, s.plates, s.plate_laws, s.plate_spring, load, walls, first, last, law, dt)
     if s.rectangles.shape[0] > 0:
@@ -176,7 +176,7 @@ def surfaces_of_block(b, d, s, law, dt, sweep):
 def surfaces_threads(d, surfaces, law, dt, sweep):
     """Contacts with all surfaces, block by block: adds to force and torque, overwrites springs and sweep.partial."""
     for b in prange(sweep.partial.shape[0]):
-        surfaces_of_block(b, d, surfaces, law, dt, sweep)
+        surfaces_of_block(np.int64(b), d, surfaces, law, dt, sweep)
 
 
 @law_function
@@ -216,7 +216,7 @@ def add_surface_forces(d, surfaces, law, dt, sweep):
     """
     blocks_of_surfaces(d, surfaces, law, dt, sweep)
     to_plates = surfaces.walls.shape[0]
-    add_up(sweep.partial, 0, surfaces.wall_load)
+    add_up(sweep.partial, np.int64(0), surfaces.wall_load)
     add_up(sweep.partial, to_plates, surfaces.plate_force)
     add_up(sweep.partial, to_plates + surfaces.plates.shape[0], surfaces.rectangle_force)
 

@@ -179,7 +179,7 @@ def add_wall_forces(d, walls, laws, spring, load, law, dt):
     N m/m, the force of the discs on each wall, summed in the order of discs, and its moment about the wall's point.
     """
     near = np.ones((walls.shape[0], runs_of(d.radius.shape[0])), np.uint8)
-    add_near_walls(d, walls, laws, spring, load, 0, near, 0, d.radius.shape[0], law, dt)
+    add_near_walls(d, walls, laws, spring, load, np.int64(0), near, np.int64(0), d.radius.shape[0], law, dt)
 
 
 @kernel

@@ -126,4 +126,4 @@ def sample(c, dx, dy, pad, out):
     Not checked: that dx, dy are finite.
     """
     for y in prange(dx.shape[0]):
-        sample_row(c, y, dx[y], dy[y], out[y + pad, pad : pad + dx.shape[1]])
+        sample_row(c, np.int64(y), dx[y], dy[y], out[y + pad, pad : pad + dx.shape[1]])
