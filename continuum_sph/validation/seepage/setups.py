@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from continuum_sph.seepage import Frame, PoreFlow, PressureFace, Resistance, Seepage, Skeleton, skeleton_of
-from continuum_sph.seepage.pressure_face import in_columns
 from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.seepage.pressure_face import in_columns
 from continuum_sph.soil import SoilFlow
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid

@@ -59,8 +59,8 @@ def test_a_line_through_the_face_goes_on_behind_it_wherever_the_water_is(water, 
 
 
 def test_departures_of_the_first_rows_are_answered_no_louder_once_water_has_passed(water):
-    """Rows of 1, -1, 1 Pa.  1.25: the first particle of a column is nearer and sees more of the first row, 0.94 of it in
-    place of 0.92, and the line through where the water was goes on by 0.16 spacings.  With 1.21 swings of first rows
+    """Rows of 1, -1, 1 Pa.  1.25: the first particle of a column is nearer and sees more of the first row, 0.94 of it
+    in place of 0.92, and the line through where the water was goes on by 0.16 spacings.  With 1.21 swings of first rows
     fade in a layer of 40 rows that consolidates; with distances of now, 1.5, they grew."""
 
     def zigzag(x):
