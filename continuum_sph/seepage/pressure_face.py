@@ -5,9 +5,9 @@ mean flux q̄ of the water that a wall particle sees, so that flow passes (its g
 for ever).  Of a particle at depth d, with kernel means p̄ of pressure and z̄ of distance, z̄0 at the start, and the slope
 s of the line through p0 that fits best what the first particle of its column sees, Σ (p - p0) z W/Σ z² W:
 
-    ε = z̄0 - z̄,   p1 = p0 - s ε,   p = p1 - (p̄ - p1) (d - ε)/z̄0
+    ε = max(0, z̄0 - z̄),   p1 = p0 - s ε,   p = p1 - (p̄ - p1) (d - ε)/(z̄ + ε)
 
-p1 is the pressure of the line where the face was for the water, before this came nearer by ε.  With
+p1 is the pressure of the line where the face was for the water, before this came out by ε.  With
 p0 - (p̄ - p0) d/z̄, as in earlier versions, departures of the first rows from the line are continued by d/z̄, which is
 about 1 on the lattice, where such swings neither gain nor lose, and more once water has passed outwards: after 0.11
 spacings it gave them more than diffusion took, and they grew (a layer of 40 rows that consolidates, 40 mm/s in place of
@@ -149,10 +149,10 @@ def prescribe_pressure(columns, given, heights, near, x, record, pressure, ox, o
                     slope = moment / max(square, 0.0625 * h * h * weight)
                 height /= weight
                 if heights[c, layer] == 0.0:
-                    heights[c, layer] = max(height, 0.25 * h)
-                gone = heights[c, layer] - height
+                    heights[c, layer] = height
+                gone = max(0.0, heights[c, layer] - height)
                 rise = rise / weight + slope * gone
-                behind -= slope * gone + rise * (depth - gone) / heights[c, layer]
+                behind -= slope * gone + rise * (depth - gone) / max(height + gone, 0.25 * h)
                 record[w, VX] = ux / weight
                 record[w, VY] = uy / weight
             record[w, P] = behind
