@@ -41,6 +41,7 @@ from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.core.types import Floats
 
 TRIAL = 0.05  # spacings by which columns are moved to find how their push changes
+UNSEEN = -1e9  # m, z̄ of what sees no water at the start, to which none ever comes nearer
 
 
 @dataclass
@@ -70,6 +71,7 @@ class PressureFace:
         """Take up the push of the columns from a ``layer`` at its start, on the lattice;  matrix (fluid, 4): L, None
         with plain gradients;  spacing, m."""
         nx, ny = self.normal
+        self.heights[self.heights == 0.0] = UNSEEN
         self.whole, ahead, back = np.zeros((3, len(self.columns)))
         for push, shift in ((self.whole, 0.0), (ahead, TRIAL * spacing), (back, -TRIAL * spacing)):
             push_of(self.columns, shift, near, layer.x, layer.record, matrix, nx, ny, push)

@@ -5,7 +5,7 @@ import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.pressure_face import prescribe_pressure
+from continuum_sph.seepage.pressure_face import UNSEEN, prescribe_pressure
 from continuum_sph.water.state import P, X, Y
 from porescale.common.schema.sections import validate
 
@@ -73,3 +73,13 @@ def test_departures_of_the_first_rows_are_answered_no_louder_once_water_has_pass
     water.faces[0].heights[:] = 0.0  # the check that fails: distances of now, over which first rows swing ever more
     louder, _ = behind(water, GONE, zigzag)
     assert (louder / still > 1.4).all()
+
+
+def test_what_a_face_saw_at_the_start_is_no_part_of_the_state(water):
+    """A run that goes on takes it from its scene: distances of those that saw no water then stay unknown."""
+    heights = water.faces[0].heights.copy()
+    assert (heights[AMID, 2] == UNSEEN).all()
+    behind(water, GONE, lambda x: 1000.0 * x)
+    np.testing.assert_array_equal(water.faces[0].heights, heights)
+    behind(water, 0.5, lambda x: 1000.0 * x)  # the third of a column sees the first row now
+    np.testing.assert_array_equal(water.faces[0].heights, heights)
