@@ -41,7 +41,7 @@ from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.core.types import Floats
 
 TRIAL = 0.05  # spacings by which columns are moved to find how their push changes
-UNSEEN = -1e9  # m, z̄ of what sees no water at the start, to which none ever comes nearer
+UNSEEN = -1e9  # m, z̄ where no water has been seen: none counts as come out
 
 
 @dataclass
@@ -51,8 +51,9 @@ class PressureFace:
     columns : (m, layers) numbers of its wall particles, those behind each other in a row (`in_columns`);  point :
     (x, y) m on it;  normal : (x, y) of unit length, into the water;  pressure : (m, layers) Pa, at the foot of each
     particle, settable at any time;  corners : (l,) numbers of the wall particles behind it that lie beyond its ends, in
-    corners of the tank;  heights : (m, layers) m, z̄ at the start;  whole, slope : (m,) 1/m and 1/m², push of each
-    column on the water of the start (`push_of`), and how it grows as the column moves along the normal.
+    corners of the tank;  heights : (m, layers) m, z̄ at the start, UNSEEN until `arrange`;  whole, slope : (m,) 1/m and
+    1/m², push of each column on the water of the start (`push_of`), and how it grows as the column moves along the
+    normal.
     """
 
     columns: NDArray[np.int64]
@@ -65,13 +66,13 @@ class PressureFace:
     slope: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        self.heights = np.zeros(self.columns.shape)
+        self.heights = np.full(self.columns.shape, UNSEEN)
 
     def arrange(self, near: Neighbours, layer: Layer, matrix: Floats | None, spacing: float) -> None:
-        """Take up the push of the columns from a ``layer`` at its start, on the lattice;  matrix (fluid, 4): L, None
-        with plain gradients;  spacing, m."""
+        """Take up the push of the columns, and the water that they see, from a ``layer`` at its start, on the lattice;
+        matrix (fluid, 4): L, None with plain gradients;  spacing, m."""
         nx, ny = self.normal
-        self.heights[self.heights == 0.0] = UNSEEN
+        distances(self.columns, near, layer.x, layer.record, *self.point, nx, ny, self.heights)
         self.whole, ahead, back = np.zeros((3, len(self.columns)))
         for push, shift in ((self.whole, 0.0), (ahead, TRIAL * spacing), (back, -TRIAL * spacing)):
             push_of(self.columns, shift, near, layer.x, layer.record, matrix, nx, ny, push)
@@ -110,48 +111,62 @@ def in_columns(rows: NDArray[np.int64], x: Floats, normal: tuple[float, float]) 
     return rows[np.lexsort((layer, np.rint(2.0 * along / spacing)))].reshape(-1, int(layer.max()) + 1)
 
 
+@inline
+def seen_behind(w, depth, p0, near, x, record, nx, ny):
+    """Sums over the water that wall particle ``w`` sees at a ``depth`` (m) behind a face: Σ W, Σ z W, Σ z² W,
+    Σ (p - p0) W, Σ (p - p0) z W, and of velocity Σ u W, Σ v W.  The rest: of `prescribe_pressure`."""
+    kind, h = near.kind, near.h
+    weight, height, square, rise, moment, ux, uy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(np.uint64(near.start[w]), np.uint64(near.split[w])):
+        j = np.uint64(near.partner[k])
+        dx = image(x[w, 0] - record[j, X], near.period_x)
+        dy = image(x[w, 1] - record[j, Y], near.period_y)
+        value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
+        z = -(dx * nx + dy * ny) - depth
+        above = record[j, P] - p0
+        weight += value
+        height += z * value
+        square += z * z * value
+        rise += above * value
+        moment += above * z * value
+        ux += record[j, VX] * value
+        uy += record[j, VY] * value
+    return weight, height, square, rise, moment, ux, uy
+
+
+@parallel_kernel
+def distances(columns, near, x, record, ox, oy, nx, ny, heights):
+    """Overwrites ``heights`` (m, layers) m with z̄, UNSEEN where no water is seen; the rest: of `prescribe_pressure`."""
+    for number in prange(columns.shape[0]):
+        c = row(number)
+        for layer in range(columns.shape[1]):
+            w = columns[c, layer]
+            depth = (ox - x[w, 0]) * nx + (oy - x[w, 1]) * ny
+            weight, height, _, _, _, _, _ = seen_behind(w, depth, 0.0, near, x, record, nx, ny)
+            heights[c, layer] = height / weight if weight > 0.0 else UNSEEN
+
+
 @parallel_kernel
 def prescribe_pressure(columns, given, heights, near, x, record, pressure, ox, oy, nx, ny):
     """Overwrites pressure and velocity of the ``columns`` (m, layers) of wall particles in ``record`` and ``pressure``
     (n,) Pa.
 
-    given (m, layers) Pa;  heights (m, layers) m: z̄ at the start, overwritten where they are 0;  near: see
-    `water.bundles`;  x (n, 2) m;  (ox, oy), (nx, ny): a point of the face and its normal into the water.
+    given (m, layers) Pa;  heights (m, layers) m: z̄ at the start;  near: see `water.bundles`;  x (n, 2) m;  (ox, oy),
+    (nx, ny): a point of the face and its normal into the water.
     """
-    kind, h = near.kind, near.h
-    for c in prange(columns.shape[0]):
+    h = near.h
+    for number in prange(columns.shape[0]):
+        c = row(number)
         slope = 0.0
         for layer in range(columns.shape[1]):
             w = columns[c, layer]
             depth = (ox - x[w, 0]) * nx + (oy - x[w, 1]) * ny
             behind = given[c, layer]
-            weight = 0.0
-            rise = 0.0
-            height = 0.0
-            moment = 0.0
-            square = 0.0
-            ux = 0.0
-            uy = 0.0
-            for k in range(np.uint64(near.start[w]), np.uint64(near.split[w])):
-                j = np.uint64(near.partner[k])
-                dx = image(x[w, 0] - record[j, X], near.period_x)
-                dy = image(x[w, 1] - record[j, Y], near.period_y)
-                value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
-                z = -(dx * nx + dy * ny) - depth
-                above = record[j, P] - behind
-                weight += value
-                rise += above * value
-                height += z * value
-                moment += above * z * value
-                square += z * z * value
-                ux += record[j, VX] * value
-                uy += record[j, VY] * value
+            weight, height, square, rise, moment, ux, uy = seen_behind(w, depth, behind, near, x, record, nx, ny)
             if weight > 0.0:
                 if layer == 0:
                     slope = moment / max(square, 0.0625 * h * h * weight)
                 height /= weight
-                if heights[c, layer] == 0.0:
-                    heights[c, layer] = height
                 gone = max(0.0, heights[c, layer] - height)
                 rise = rise / weight + slope * gone
                 behind -= slope * gone + rise * (depth - gone) / max(height + gone, 0.25 * h)
