@@ -75,6 +75,13 @@ class Pores(Section):
     permeability: float = quantity("m^2", gt=0)
 
 
+class SofteningLaw(Section):
+    """[softening] of the file: what it holds of [soil.softening]; widths of shear bands no packing shows."""
+
+    friction_angle: float = quantity("rad", ge=0)
+    shear_strain: float = quantity("", gt=0)
+
+
 class MaterialFile(Section):
     """The contents of a material file, see `porescale homogenise`."""
 
@@ -82,6 +89,7 @@ class MaterialFile(Section):
     soil: Taken
     strength: Strengths
     pores: Pores | None = None
+    softening: SofteningLaw | None = None
     rate: RateSection | None = None
     measured: dict[str, Known] = pydantic.Field(default_factory=dict)
     made: dict[str, Any] = pydantic.Field(default_factory=dict, description="how the file was made")
@@ -154,8 +162,9 @@ def with_material(table: Any, folder: Path | None) -> Any:
         origin["intrinsic_permeability"] = file.pores.permeability
         taken["permeability"] = speed(file.pores.permeability, table)
     own = {key: value for key, value in soil.items() if key != "material"}
-    if file.rate is not None and isinstance(own.get("rate"), Mapping):  # only a scene that has the table takes it over
-        own["rate"] = {**file.rate.model_dump(), **own["rate"]}
+    for law, given in (("softening", file.softening), ("rate", file.rate)):
+        if given is not None and isinstance(own.get(law), Mapping):  # only a scene that has the table takes it over
+            own[law] = {**given.model_dump(), **own[law]}
     return {**table, "soil": {**taken, **own, "origin": origin}}
 
 

@@ -22,9 +22,10 @@ class RateSection(Section):
     def faults(self, soil: Any) -> list[Fault]:
         """What is wrong with it in a ``soil``."""
         found = []
-        if self.friction_angle < soil.friction_angle:
+        slow = (soil.softening or soil).friction_angle
+        if self.friction_angle < slow:
             found.append(Fault("soil.rate.friction_angle", self.friction_angle, "is less than that at rest", "rad",
-                               f">= {soil.friction_angle:g}"))  # fmt: skip
+                               f">= {slow:g}"))  # fmt: skip
         for key, there in (("elastic", soil.elastic), ("held", soil.held)):
             if there:
                 found.append(Fault(f"soil.{key}", True, "leaves nothing that soil.rate could slow",

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import Origin
 from continuum_sph.scene.rate import RateSection
+from continuum_sph.scene.softening import SofteningSection
 from continuum_sph.scene.suction import SuctionSection
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
@@ -166,6 +167,7 @@ class SoilSection(Section):
     watch: tuple[Watch, ...] = pydantic.Field(default=(), description="parts of it whose displacement is recorded")
     suction: SuctionSection | None = None
     rate: RateSection | None = None
+    softening: SofteningSection | None = None
     numerics: SoilNumerics = SoilNumerics()
 
     @classmethod
@@ -219,8 +221,8 @@ class SoilSection(Section):
         if self.stress == "unconsolidated" and (not self.saturated or self.held):
             repair = 'give soil.saturated = true and soil.held = false, or stress "geostatic"'
             found.append(Fault("soil.stress", self.stress, "is of ground with full pores that may move", repair=repair))
-        if self.rate:
-            found += self.rate.faults(self)
+        for part in (self.rate, self.softening):
+            found += part.faults(self) if part else []
         if self.dilatancy_angle > self.friction_angle:
             found.append(
                 Fault("soil.dilatancy_angle", self.dilatancy_angle, "makes soil that gives energy as it shears",

@@ -6,6 +6,7 @@ What there is
   `Soil`      the state: arrays, soil particles first, wall particles after them
   `Material`  elasticity, strength, weight and porosity of one kind of soil: a row of the table that kernels read
   `Rate`      how its friction grows with the rate of shear, where it does
+  `Softening` what its strength falls to as it shears, where it does
   `SoilLaw`   parameters of all particles: smoothing, gravity, damping, corrections, walls
   `SoilFlow`  a soil, its law and its pairs, moving
 

@@ -2,6 +2,7 @@
 from .flow import SoilFlow as SoilFlow
 from .material import Material as Material
 from .material import Rate as Rate
+from .material import Softening as Softening
 from .material import porosity as porosity
 from .material import table as table
 from .parameters import SoilLaw as SoilLaw

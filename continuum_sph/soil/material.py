@@ -12,6 +12,10 @@ sin φ = tan φ_d: their 0.5 is φ = 30°.
 Grains that are sheared fast rub more.  With the inertial number I = γ' d √(ρs/p), γ' the rate of shear strain, d and ρs
 diameter and density of the grains, sin φ(I) = sin φ + (sin φ∞ - sin φ) I/(I0 + I) (Jop, Forterre & Pouliquen,
 Nature 441 (2006) 727, whose μ is τ/p).  A soil without a `Rate` has none of it.
+
+Dense or cemented soil softens: with the plastic shear strain γ its strength goes to that of large strains,
+sin φ = sin φ_l + (sin φ - sin φ_l) e^(-γ/γs), c cos φ in the same way, sin ψ to 0, where volume no longer changes.  A
+soil without a `Softening` has none of it.  With a `Rate`, friction grows from that of large strains.
 """
 
 import math
@@ -41,10 +45,14 @@ from porescale.common.core.types import Floats
     GRAINS,
     RATE_STRENGTH,
     RATE_PACE,
-) = range(15)
+    SOFTENED_FRICTION,
+    SOFTENED_COHESION,
+    SOFTENED_STRAIN,
+) = range(18)
 """Columns of the table: B/E and G/E, dσ_zz/dp; m; p0 Pa; least p for stiffness, Pa; sin φ; c cos φ, Pa; sin ψ; largest
 tension, Pa; 1 if it yields; density at the start, share of grains 1 - n at the start; sin φ of the fastest flow less
-sin φ; rate of shear over √p at which half of that is there, 1/(s √Pa).  B and G are times E0."""
+sin φ; rate of shear over √p at which half of that is there, 1/(s √Pa); sin φ and c cos φ (Pa) less those after large
+strains; γs, 0 where nothing softens.  B and G are times E0."""
 
 
 MODULI = ("plane strain", "printed")
@@ -79,13 +87,36 @@ class Rate:
         require_in_range("material.rate", vars(self), RATE_RANGES)
 
 
+SOFTENING_RANGES = {
+    "sin_friction": Range(ge=0, le=1), "cohesion_intercept": Range("Pa", ge=0), "shear_strain": Range(gt=0)
+}  # fmt: skip
+"""What the numbers of a softening may be."""
+
+
+@dataclass(frozen=True)
+class Softening:
+    """What strength goes to with the plastic shear strain.
+
+    sin_friction : sin φ_l after large strains;  cohesion_intercept : c cos φ then, Pa;  shear_strain : γs, at which 1/e
+    of the difference is left.  Raises InputError for values that no soil has, see SOFTENING_RANGES.
+    """
+
+    sin_friction: float
+    cohesion_intercept: float
+    shear_strain: float
+
+    def __post_init__(self) -> None:
+        require_in_range("material.softening", vars(self), SOFTENING_RANGES)
+
+
 @dataclass(frozen=True)
 class Material:
     """stiffness : E0, Pa at the mean stress ``reference`` (p0, Pa);  exponent : m;  poisson : ν;  modulus : "plane
     strain" or "printed";  sin_friction : sin φ;  cohesion_intercept : c cos φ, Pa;  sin_dilatancy : sin ψ;
     tension : largest, Pa;  yields : else elastic for ever;  density : of grains per whole volume at the start, kg/m³;
     porosity : n then;  least : mean stress (Pa) below which soil gets no softer;  rate : how friction grows with the
-    rate of shear, None where it does not.  Raises InputError for values that no material has, see RANGES.
+    rate of shear, None where it does not;  softening : how strength falls with plastic shear strain, None where it does
+    not.  Raises InputError for values that no material has, see RANGES.
     """
 
     stiffness: float
@@ -102,12 +133,22 @@ class Material:
     yields: bool = True
     porosity: float = 0.4
     rate: Rate | None = None
+    softening: Softening | None = None
 
     def __post_init__(self) -> None:
         require_in_range("material", vars(self), RANGES, {"modulus": MODULI})
-        if self.rate and self.rate.sin_friction < self.sin_friction:
-            problem, limits = "is less than at rest", f">= {self.sin_friction:g}"
+        for name in ("sin_friction", "cohesion_intercept") if self.softening else ():
+            found, most = getattr(self.softening, name), getattr(self, name)
+            if found > most:
+                raise InputError(Fault(f"material.softening.{name}", found, "is more than before", "", f"<= {most:g}"))
+        if self.rate and self.rate.sin_friction < self.slow_friction:
+            problem, limits = "is less than at rest", f">= {self.slow_friction:g}"
             raise InputError(Fault("material.rate.sin_friction", self.rate.sin_friction, problem, "", limits))
+
+    @property
+    def slow_friction(self) -> float:
+        """sin φ after large strains, without what grows with the rate of shear."""
+        return self.softening.sin_friction if self.softening else self.sin_friction
 
     @property
     def printed(self) -> bool:
@@ -144,7 +185,7 @@ class Material:
         return float(self.stiffness * (max(pressure, self.least) / self.reference) ** self.exponent)
 
     def row(self) -> Floats:
-        """The material's row of the table that kernels take, (15,)."""
+        """The material's row of the table that kernels take, (18,)."""
         across = 0.0 if self.printed else 2.0 * self.poisson
         # Tension beyond the tip of the cone, c cot φ, cannot be.
         tension = min(
@@ -152,21 +193,26 @@ class Material:
         )
         growth, pace = 0.0, 0.0
         if self.rate:
-            growth = self.rate.sin_friction - self.sin_friction
+            growth = self.rate.sin_friction - self.slow_friction
             grains = self.density / (1.0 - self.porosity)
             pace = self.rate.inertial_number / (self.rate.grain_diameter * math.sqrt(grains))
+        softened = 0.0, 0.0, 0.0
+        if it := self.softening:
+            softened = (
+                self.sin_friction - it.sin_friction, self.cohesion_intercept - it.cohesion_intercept, it.shear_strain
+            )  # fmt: skip
         return np.array(
             [
                 self.area_modulus * self.stiffness, self.shear_modulus * self.stiffness, across, self.exponent,
                 self.reference, self.least, self.sin_friction, self.cohesion_intercept, self.sin_dilatancy, tension,
                 float(self.yields),
-                self.density, 1.0 - self.porosity, growth, pace,
+                self.density, 1.0 - self.porosity, growth, pace, *softened,
             ]
         )  # fmt: skip
 
 
 def table(materials: tuple[Material, ...]) -> Floats:
-    """The table of all materials, (m, 15)."""
+    """The table of all materials, (m, 18)."""
     return np.array([material.row() for material in materials])
 
 
@@ -178,7 +224,7 @@ def porosity(density: Floats, material: NDArray[np.int64], rows: Floats) -> Floa
 
 
 @inline
-def softening(p, row):
+def stiffness_share(p, row):
     """E/E0 at the mean stress p (Pa), eq. 42."""
     if row[EXPONENT] == 0.0:
         return 1.0

@@ -18,6 +18,9 @@ Where friction grows with the rate of shear (`material`), r - p sin φ - c cos �
 p (sin φ∞ - sin φ) γ'/(γ' + γ0), γ' = dγ/dt, γ0 = √p I0/(d √ρs): with p of the trial in γ0 that is a quadratic in dγ, of
 which one root is positive, so the way back is as exact as without (Dunatunga & Kamrin iterate).
 
+Where strength softens (`material`), all of it is that of the plastic shear strain before the step, the sum of dγ: first
+order in a step, of which dγ/γs is 1e-3 where soil shears fast.
+
 The p of the yield criterion alone is the mean of the particle's surroundings, p̄ = p + ``excess`` of `momentum`.  Noise
 in p that yields by itself is cut off on one side, where r > p sin φ: soil weakens, the more the finer it is.
 """
@@ -34,9 +37,12 @@ from continuum_sph.soil.material import (
     SHEAR,
     SIN_DILATANCY,
     SIN_FRICTION,
+    SOFTENED_COHESION,
+    SOFTENED_FRICTION,
+    SOFTENED_STRAIN,
     TENSION,
     YIELDS,
-    softening,
+    stiffness_share,
 )
 from porescale.common.compiled.jit import inline
 
@@ -60,14 +66,32 @@ def sheared(beyond, softer, p, dilating, step, row):
 
 
 @inline
-def returned(p, r, excess, area, shear, step, row):
-    """(p, r, dγ, opened): a trial stress (Pa) brought back to yield, shear strain that did not come back and share of
-    the volume that came apart;  excess: mean p of the surroundings less p, Pa, never below -p where p > 0;
-    area, shear: B and G, Pa;  step: s;  row: the material's."""
+def strength(plastic, row):
+    """(sin φ, c cos φ Pa, sin ψ, T Pa) after a ``plastic`` shear strain of a soil of the material's ``row``."""
     slope = row[SIN_FRICTION]
-    cohesion = row[COHESION_INTERCEPT] + slope * max(excess, -max(p, 0.0))
+    cohesion = row[COHESION_INTERCEPT]
     dilatancy = row[SIN_DILATANCY]
     tension = row[TENSION]
+    if row[SOFTENED_STRAIN] > 0.0:
+        lost = 1.0 - np.exp(-plastic / row[SOFTENED_STRAIN])
+        left = 1.0
+        if cohesion > 0.0:
+            left = 1.0 - lost * row[SOFTENED_COHESION] / cohesion
+        slope -= lost * row[SOFTENED_FRICTION]
+        cohesion *= left
+        dilatancy *= 1.0 - lost
+        tension *= left  # stays within c cot φ, as φ falls
+    return slope, cohesion, dilatancy, tension
+
+
+@inline
+def returned(p, r, excess, moduli, step, bears, row):
+    """(p, r, dγ, opened): a trial stress (Pa) brought back to yield, shear strain that did not come back and share of
+    the volume that came apart;  excess: mean p of the surroundings less p, Pa, never below -p where p > 0;
+    moduli: (B, G), Pa;  step: s;  bears: of `strength`;  row: the material's."""
+    area, shear = moduli
+    slope, cohesion, dilatancy, tension = bears
+    cohesion += slope * max(excess, -max(p, 0.0))
     new_p = p
     new_r = r
     if r > slope * p + cohesion:
@@ -94,12 +118,12 @@ def returned(p, r, excess, area, shear, step, row):
 
 
 @inline
-def new_stress(stress, excess, gradient, step, opening, row):
+def new_stress(stress, excess, gradient, step, opening, plastic, row):
     """(σ_xx, σ_yy, σ_xy, σ_zz, opening, dγ) after ``step`` (s);  stresses in Pa.
 
     stress: (σ_xx, σ_yy, σ_xy, σ_zz);  excess: mean p of the surroundings less p, Pa;  gradient of the velocity:
     (∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y), 1/s;  opening: share of the volume by which the element has come apart;
-    row: the material's line of the table.
+    plastic: shear strain that did not come back before;  row: the material's line of the table.
     """
     xx, yy, xy, zz = stress
     gxx, gxy, gyx, gyy = gradient
@@ -114,9 +138,9 @@ def new_stress(stress, excess, gradient, step, opening, row):
     closing = -(gxx + gyy) * step
     closed = min(opening, max(0.0, closing))
     opening -= closed
-    soft = softening(p, row)
+    soft = stiffness_share(p, row)
     if row[EXPONENT] > 0.0:  # stiffness of half the way: the second order in a step
-        soft = softening(p + 0.5 * row[AREA] * soft * (closing - closed), row)
+        soft = stiffness_share(p + 0.5 * row[AREA] * soft * (closing - closed), row)
     area = row[AREA] * soft
     shear = row[SHEAR] * soft
     new_p = p + area * (closing - closed)
@@ -125,7 +149,7 @@ def new_stress(stress, excess, gradient, step, opening, row):
     flow = 0.0
     if row[YIELDS] > 0.0:
         r = np.sqrt(s * s + t * t)
-        new_p, new_r, flow, opened = returned(new_p, r, excess, area, shear, step, row)
+        new_p, new_r, flow, opened = returned(new_p, r, excess, (area, shear), step, strength(plastic, row), row)
         if new_r < r:
             s *= new_r / r
             t *= new_r / r

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from continuum_sph.soil.material import AREA, SHEAR, softening
+from continuum_sph.soil.material import AREA, SHEAR, stiffness_share
 from continuum_sph.soil.plasticity import new_stress
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, SHEAR_RATE, SOUND_OVER_DENSITY, TXX, TXY, TYX, TYY, VOLUME
 from porescale.common.compiled.jit import parallel_kernel, prange
@@ -81,7 +81,7 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
                 stress[i, XY] + spreading * spread[i, XY], stress[i, ZZ] + spreading * spread[i, ZZ],
             ),
             spread[i, EXCESS], (gxx - swelling, strain_xy + turn_xy, strain_xy - turn_xy, gyy - swelling), step,
-            separation_strain[i], row,
+            separation_strain[i], plastic_shear[i], row,
         )  # fmt: skip
         shrunk = (1.0 - step * axx) * (1.0 - step * ayy) - step * step * axy * ayx
         density[i] *= shrunk * record[i, VOLUME] / (record[i, VOLUME] + spreading * spread[i, GROWN])
@@ -91,7 +91,7 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
         stress[i, ZZ] = zz
         separation_strain[i] = opened
         plastic_shear[i] += flow
-        speed2 = (row[AREA] + row[SHEAR]) * softening(0.5 * (xx + yy), row) / density[i]
+        speed2 = (row[AREA] + row[SHEAR]) * stiffness_share(0.5 * (xx + yy), row) / density[i]
         max_sound2 = max(max_sound2, speed2)
         kxx = matrix[i, 0]
         kxy = matrix[i, 1]

@@ -5,11 +5,12 @@ format          1
                 stiffness at the mean stress reference, poisson;  SI, angles in rad
 [strength.critical], [strength.peak]    friction_angle, dilatancy_angle: after large strains, and at failure
 [pores]         permeability: K, m², of which k = K ρ g/μ of the scene's own water
+[softening]     where the peak is resolved: friction_angle after large strains, shear_strain γs, see softening.py
 [rate]          where homogenise.rates asks for it: grain_diameter, friction_angle of the fastest shear, inertial_number
                 I0 of half the growth, see shear_rate.py
 [measured.…]    mean, interval (half of that at 95 %, by Student's t, with what is systematic), systematic (lattice and
-                lambda), standard_error, deviation of one packing, values, unit, of each number; values of the law of
-                [rate] are the jackknife's
+                lambda), standard_error, deviation of one packing, values, unit, of each number; values of the laws of
+                [softening] and [rate] are the jackknife's
 [made]          by what, of what, how: version, commit, scene, seeds, lambda, cells, grains, pressure …; doubts
 """
 
@@ -89,10 +90,10 @@ def tables(
     density: float,
     pressure: float,
     made: Mapping[str, Any],
-    rate: Mapping[str, float] | None = None,
+    laws: Mapping[str, Mapping[str, float]] | None = None,
 ) -> dict[str, Any]:
     """The tables of a material file.  density : of grains, kg/m³;  pressure : mean stress of the measurement, Pa;
-    rate : the table [rate], None for a file without it."""
+    laws : the tables [softening] and [rate], of those that are handed over."""
     mean = {name: it.mean for name, it in found.items()}
     soil = {"density": (1.0 - mean["porosity"]) * density, "porosity": mean["porosity"]}
     if elastic(found):
@@ -105,8 +106,7 @@ def tables(
     whole: dict[str, Any] = {"format": FORMAT, "soil": soil, "strength": strength}
     if "permeability" in mean:
         whole["pores"] = {"permeability": mean["permeability"]}
-    if rate is not None:
-        whole["rate"] = dict(rate)
+    whole |= {name: dict(law) for name, law in (laws or {}).items()}
     words = {name: name.replace(" ", "_").replace("'", "") for name in found}
     whole["measured"] = {words[name]: it.table() for name, it in found.items()}
     return {**whole, "made": dict(made)}

@@ -23,7 +23,7 @@ from porescale.analysis.homogenise import FASTEST, packing_of, pressure_of
 from porescale.analysis.material import Known
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.scene import Scene
-from porescale.common.core.statistics import independent
+from porescale.common.core.statistics import independent, jackknife
 from porescale.common.core.types import Floats
 
 SHEAR = 10.0
@@ -161,11 +161,8 @@ def inertial_numbers(tests: Sequence[Sequence[Steady]]) -> Floats:
 def known_law(tests: Sequence[Sequence[Steady]]) -> dict[str, Known]:
     """The LAW through the means of all packings, with intervals; empty where it has none, or no angle.
 
-    values : that of all packings, and about it the jackknife's, n of all less n - 1 of all but one, less their mean:
-    mean is the fit, standard error that of the jackknife (Tukey 1958, Ann. Math. Stat. 29, 614).  One packing alone may
-    have no I0.
+    values : of the jackknife, whose mean is the fit: one packing alone may have no I0.
     """
-    count = len(tests)
     inertial = np.array([[it.inertial for it in each] for each in tests])
     sine = np.array([[it.sine for it in each] for each in tests])
 
@@ -176,10 +173,7 @@ def known_law(tests: Sequence[Sequence[Steady]]) -> dict[str, Known]:
             return np.full(len(LAW), math.nan)
         return np.array([math.asin(rest), math.asin(rest + growth), growth, halfway])
 
-    whole = list(range(count))
-    every = of(whole)
-    without = np.array([of([j for j in whole if j != k]) for k in whole])
-    values = every - (count - 1) * (without - without.mean(axis=0))
+    values = jackknife(of, len(tests))
     if not np.isfinite(values).all():
         return {}
     return {name: Known(tuple(values[:, k].tolist()), unit) for k, (name, unit) in enumerate(LAW.items())}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.cli.homogenise_rates import Rates, known_of, sheared, table_of
+from porescale.cli.homogenise_rates import Rates, known_of, laws_of, sheared
 from porescale.cli.homogenise_rates import about as about_rates
 from porescale.common.api.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say, use_threads
@@ -197,6 +197,7 @@ def write(
     from porescale.analysis.biaxial import curves
     from porescale.analysis.homogenise import lambda_error, packing_of, pressure_of
     from porescale.analysis.material import NAME, UNITS, known, tables, text
+    from porescale.analysis.softening import known_softening
     from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.cli.homogenise_picture import picture
     from porescale.common.evidence.files import write_files
@@ -204,7 +205,9 @@ def write(
     from porescale.common.studies.sweep_files import csv_text
     from porescale.demseg.convert import toml
 
+    series = [read_series(ended.folder / "series.csv") for ended in ends]
     found, of_rates = known(rows, lambda_error(scene)), known_of(rates)
+    of_softening = known_softening(series)
     titles = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS.items() if name in found}
     seeds = [int(ended.point.value("grains.packing.seed")) for ended in ends]
     lines = [
@@ -213,16 +216,20 @@ def write(
     for name in (name for name in of_rates if " at inertial number " in name):
         for line, value in zip(lines, of_rates[name].values, strict=True):
             line[name] = value
-    tests = [curves(read_series(ended.folder / "series.csv")) for ended in ends]
     made = about(scene, command, ends, rows, found)
-    every = found | of_rates
+    every = found | of_softening | of_rates
     more, doubts = about_rates(rates, every)
     made["doubts"] += doubts
     density = MaterialPlan.of(scene).density(packing_of(scene).material)
-    whole = tables(every, density, pressure_of(scene), made | more, table_of(scene, every))
+    whole = tables(every, density, pressure_of(scene), made | more, laws_of(scene, every))
     material = HEAD + toml(whole)
     write_files(
-        folder, {"homogenise.csv": csv_text(lines), "homogenise.png": picture(tests, every, rates), NAME: material}
+        folder,
+        {
+            "homogenise.csv": csv_text(lines),
+            "homogenise.png": picture([curves(it) for it in series], every, rates),
+            NAME: material,
+        },
     )
     warned = [f"warning: {problem}" for problem in made["doubts"]]
     return "\n".join([text(every), *warned, f"{folder / NAME}, homogenise.csv, homogenise.png"])

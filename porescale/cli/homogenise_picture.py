@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from porescale.analysis.biaxial import running
 from porescale.analysis.material import Known
 from porescale.analysis.shear_rate import AT_REST, GROWTH, HALFWAY, inertial_numbers, law, point
+from porescale.analysis.softening import STRAIN
 from porescale.cli.homogenise_rates import Rates
 from porescale.common.core.types import Floats
 from porescale.common.evidence.files import new_figure, png
@@ -35,6 +36,8 @@ def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known], r
         mean, wide = np.degrees(found[name].mean), np.nan_to_num(np.degrees(found[name].interval))
         left.axhline(mean, color=colour, lw=1.0, label=f"{name} {found[name].text()}")
         left.axhspan(mean - wide, mean + wide, color=colour, alpha=0.35, lw=0)
+    if STRAIN in found:
+        left.plot([], [], " ", label=f"{STRAIN} {found[STRAIN].text()}")
     left.set(xlabel="axial strain", ylabel="mobilised friction angle, degrees", ylim=(0.0, None))
     left.legend(fontsize=7, frameon=False, loc="lower right")
     middle.set(xlabel="axial strain", ylabel="volume, %")

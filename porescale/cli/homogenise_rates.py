@@ -82,9 +82,12 @@ def about(rates: Rates, found: dict[str, Known]) -> tuple[dict[str, Any], list[s
     return made, rate_doubts(found, rates.asked, inertial)
 
 
-def table_of(scene: Tables, found: dict[str, Known]) -> dict[str, float] | None:
-    """[rate] of the material file; None where no law is handed over."""
+def laws_of(scene: Tables, found: dict[str, Known]) -> dict[str, dict[str, float]]:
+    """[softening] and [rate] of the material file, of those laws that are handed over."""
+    from porescale.analysis import shear_rate, softening
     from porescale.analysis.homogenise import packing_of
-    from porescale.analysis.shear_rate import handed_over, rate_table
 
-    return rate_table(found, packing_of(scene).diameter) if handed_over(found) else None
+    made = {"softening": softening.softening_table(found)} if softening.handed_over(found) else {}
+    if shear_rate.handed_over(found):
+        made["rate"] = shear_rate.rate_table(found, packing_of(scene).diameter)
+    return made

@@ -30,7 +30,7 @@ from porescale.analysis.shear_rate import (
     sheared,
     steady,
 )
-from porescale.cli.homogenise_rates import Rates, about, known_of, table_of
+from porescale.cli.homogenise_rates import Rates, about, known_of, laws_of
 from porescale.common.schema.sections import validate
 from porescale.demseg.convert import toml
 from tests.reference.scenes import column
@@ -119,7 +119,7 @@ def test_without_rates_a_material_file_has_nothing_of_them():
     none = Rates()
     assert known_of(none) == {}
     assert about(none, {}) == ({}, [])
-    assert table_of(column(), {}) is None
+    assert laws_of(column(), {}) == {}
     rows = [{"porosity": 0.2, "critical friction angle": 0.3, "peak friction angle": 0.4, "peak dilatancy angle": 0.1}]
     assert "rate" not in tables(known(rows * 2), 2500.0, 300.0, {})
 
@@ -127,7 +127,7 @@ def test_without_rates_a_material_file_has_nothing_of_them():
 def test_a_material_file_with_rates_reaches_a_scene_that_asks_for_them(tmp_path):
     found = found_of(KNOWN)
     rows = [{"porosity": 0.2, "critical friction angle": 0.3, "peak friction angle": 0.4, "peak dilatancy angle": 0.1}]
-    whole = tables({**known(rows * 4), **found}, 2500.0, 300.0, {}, rate_table(found, 1.5e-3))
+    whole = tables({**known(rows * 4), **found}, 2500.0, 300.0, {}, {"rate": rate_table(found, 1.5e-3)})
     (tmp_path / "material.toml").write_text(toml(whole), encoding="utf-8")
     assert tomllib.loads(toml(whole)) == whole  # names with a dot, too
     named = {"material": "material.toml"}

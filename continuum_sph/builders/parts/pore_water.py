@@ -7,9 +7,10 @@ import numpy as np
 from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
 from continuum_sph.builders.parts.faces import pressure_face
 from continuum_sph.builders.parts.held_soil import held_ground
+from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
-from continuum_sph.builders.parts.soil import material_of, porous_section, soil_flow, soil_section
+from continuum_sph.builders.parts.soil import porous_section, soil_flow, soil_section
 from continuum_sph.builders.parts.water import surface_over, wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.builders.assembly import Assembly
+from continuum_sph.builders.parts.material import banded, material_of
 from continuum_sph.builders.parts.sheet_pile import sheet_pile
 from continuum_sph.builders.sanity import (
     JumpCheck,
@@ -18,12 +19,11 @@ from continuum_sph.builders.sanity import (
     require_within,
 )
 from continuum_sph.scene.numerics import NumericsSection
-from continuum_sph.scene.rate import RateSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import Outline, SoilSection
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
-from continuum_sph.soil import Material, Rate, Soil, SoilFlow, SoilLaw, porosity
+from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw, porosity
 from continuum_sph.soil.parameters import RULES
 from continuum_sph.soil.steadying import WEIGHTLESS, steadied
 from continuum_sph.soil.stress import XX, XY, YY, ZZ
@@ -278,32 +278,6 @@ def porous_section(scene: Scene) -> SoilSection:
     return section
 
 
-def material_of(section: SoilSection) -> Material:
-    """The material of a section."""
-    phi, psi = section.friction_angle, section.dilatancy_angle
-    return Material(
-        stiffness=section.stiffness,
-        density=section.density,
-        poisson=section.poisson,
-        exponent=section.exponent,
-        reference=section.reference,
-        least=section.least,
-        modulus=section.modulus,
-        sin_friction=math.sin(phi),
-        cohesion_intercept=section.cohesion * math.cos(phi),
-        sin_dilatancy=math.sin(psi),
-        tension=section.tension,
-        yields=not section.elastic,
-        porosity=section.porosity,
-        rate=rate_of(section.rate) if section.rate else None,
-    )
-
-
-def rate_of(section: RateSection) -> Rate:
-    """How the friction of a soil grows with the rate of shear."""
-    return Rate(math.sin(section.friction_angle), section.inertial_number, section.grain_diameter)
-
-
 def damping_of(section: SoilSection, numerics: NumericsSection, steady: float) -> float:
     """α of the damping: as given, or what makes α c h the given viscosity, c sound in a column at E0, or ``steady``."""
     choice = section.numerics
@@ -327,7 +301,7 @@ def soil_law(scene: Scene) -> SoilLaw:
     return SoilLaw(
         smoothing,
         numerics.spacing,
-        (material,),
+        (banded(material, section, numerics.spacing),),
         (0.0, -scene.gravity),
         damping=damping_of(section, numerics, damping),
         printed_damping=choice.damping_of == "approach",

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from continuum_sph.builders.assembly import Assembly
-from continuum_sph.builders.parts.soil import SoilPart, material_of, porous_section, soil_flow, soil_section
+from continuum_sph.builders.parts.material import material_of
+from continuum_sph.builders.parts.soil import SoilPart, porous_section, soil_flow, soil_section
 from continuum_sph.builders.sanity import Now, Range, require_finite, require_within
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.suction import SuctionSection

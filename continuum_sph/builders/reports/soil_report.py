@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from continuum_sph.builders.parts.soil import material_of, soil_law, soil_particles, soil_section
+from continuum_sph.builders.parts.material import banded, material_of
+from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.watched import watched_rows
 from continuum_sph.builders.reports.time_report import SOIL, STAGE, report_run, step_seconds
 from continuum_sph.scene.material_file import VISCOSITY, Origin
@@ -59,6 +60,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
         out.row("angle at which an endless slope shears", math.degrees(limit), "degrees", "without cohesion")
     warn_of_rest(out, section, material, material.density * scene.gravity * section.height)
     warn_of_steep_faces(scene, out)
+    report_softening(out, section, banded(material, section, spacing), pressure)
     report_rate(out, section, wet=section.suction is not None)
     out.heading("steps")
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
@@ -124,6 +126,29 @@ def warn_of_steep_faces(scene: Scene, out: Report) -> None:
         out.warn(
             f"a face of {math.degrees(angle):.3g} degrees, {high:.3g} m high, in ground without soil.tension: slabs of "
             f"it topple, however large soil.cohesion is; give soil.tension a value{most}"
+        )
+
+
+def report_softening(out: Report, section: SoilSection, material: Material, pressure: float) -> None:
+    """Add to a report what strength falls to, and by what slip; warn where particles lose it at once.
+
+    material : as particles have it;  pressure : mean stress at the floor, Pa.
+    """
+    if section.softening is None or material.softening is None:
+        return
+    left, strain = section.softening, material.softening.shear_strain
+    out.row("angle of friction after large strains", math.degrees(left.friction_angle), "degrees")
+    out.row("cohesion after large strains", left.cohesion, "Pa")
+    slip = left.shear_strain * left.band_width
+    out.row("slip of a shear band that leaves 1/e of the difference", slip, "m", f"particles: strain of {strain:.3g}")
+    lost = material.cohesion_intercept - material.softening.cohesion_intercept
+    lost += pressure * (material.sin_friction - material.softening.sin_friction)
+    elastic = lost / (material.shear_modulus * material.stiffness_at(pressure))
+    if strain < elastic:
+        out.warn(
+            f"a band of particles softens within a shear strain of {strain:.2g}, less than the elastic one that it "
+            f"gives back, {elastic:.2g}: it breaks at once; lower numerics.spacing by a factor of "
+            f"{elastic / strain:.2g}, or raise soil.stiffness"
         )
 
 

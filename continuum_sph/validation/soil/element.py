@@ -17,7 +17,7 @@ from porescale.common.evidence.validations import Measured, Validations
 EPS = float(np.finfo(np.float64).eps)
 VALIDATIONS = Validations()
 
-ROUNDS = 60  # of halving an interval that starts a strain step wide: 1e-18 of it
+ROUNDS = 62  # of halving an interval that starts twenty strain steps wide: 1e-17 of a step
 
 
 class Element:
@@ -33,7 +33,7 @@ class Element:
         """σ_xx, σ_yy, σ_xy, σ_zz (Pa), opening and plastic shear of a further strain (tensor components, compression
         positive) and turn (rad)."""
         gradient = -across, -shear - turn, -shear + turn, -upright
-        found: tuple[float, ...] = new_stress(self.stress, 0.0, gradient, 1.0, self.opening, self.row)
+        found: tuple[float, ...] = new_stress(self.stress, 0.0, gradient, 1.0, self.opening, self.plastic, self.row)
         return found
 
     def take(self, across: float, upright: float, shear: float = 0.0, turn: float = 0.0) -> None:
@@ -45,7 +45,7 @@ class Element:
     def press(self, upright: float) -> None:
         """Strain it upright under the stress that it has across: the strain across is found by halving."""
         kept = self.stress[0]
-        low, high = -4.0 * abs(upright), 4.0 * abs(upright)
+        low, high = -20.0 * abs(upright), 20.0 * abs(upright)
         for _ in range(ROUNDS):
             middle = 0.5 * (low + high)
             if self.after(middle, upright)[0] < kept:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from continuum_sph.soil import Rate
-from continuum_sph.validation.soil import fast_flow
+from continuum_sph.validation.soil import fast_flow, softening
 from continuum_sph.validation.soil.run_outs import (
     BEADS,
     RUBBING_BEADS,
@@ -45,6 +45,19 @@ for name, title, because, options in (
     LADDERS.ladder(name, title=title, along="rows of particles", levels=(10, 20, 40, 80), because=because)(
         partial(friction_error, options)
     )
+
+
+@LADDERS.ladder(
+    "soil.slip_that_softens",
+    title="Largest error of the shear stress of a layer that softens along a band, over the strength that is lost",
+    along="rows of particles",
+    levels=(10, 20, 40),
+    because="no order is expected: a band is two rows wide whatever the spacing, and some slip lies beside it; with 10 "
+    "rows there are but 4 between the platens",
+)
+def slip_error(rows: float) -> float:
+    """Of a layer of clay that is sheared slowly."""
+    return softening.course(int(rows))
 
 
 @LADDERS.ladder(

@@ -2,7 +2,7 @@
 independent."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -74,6 +74,22 @@ def independent(values: Floats) -> float:
     enough = np.arange(count) >= 0.5 * REACH * times
     time = float(times[int(np.argmax(enough))]) if enough.any() else float(count)
     return count / min(max(time, 1.0), float(count))
+
+
+def jackknife(of: Callable[[list[int]], Floats], count: int) -> Floats:
+    """Values (count, m) whose mean is ``of`` all of ``count`` samples, m numbers that are no means of one each, and
+    whose standard error is the jackknife's (Tukey 1958, Ann. Math. Stat. 29, 614).
+
+    of : the numbers (m,) of the samples of some places.  About what it gives of all: n of all less n - 1 of all but
+    one, less their mean.  nan where one of these is; of one sample, its own numbers.
+    """
+    whole = list(range(count))
+    every = of(whole)
+    if count < 2:
+        return every[None, :]
+    without = np.array([of([j for j in whole if j != k]) for k in whole])
+    found: Floats = every - (count - 1) * (without - without.mean(axis=0))
+    return found
 
 
 def needed(values: Sequence[float], width: float) -> float:

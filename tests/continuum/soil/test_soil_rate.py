@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import continuum_sph
-from continuum_sph.builders.parts.soil import material_of
+from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.report import report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.soil import Material, Rate
@@ -26,7 +26,7 @@ def sheared(material, pace, steps=4000, step=1e-5):
     """(mean stress Pa, share of it that the circle's radius is) of soil sheared at ``pace`` (1/s) under 1 kPa."""
     stress, opening, row = (1e3, 1e3, 0.0, 6e2), 0.0, material.row()
     for _ in range(steps):
-        *after, opening, _flow = new_stress.py_func(stress, 0.0, (0.0, pace, 0.0, 0.0), step, opening, row)
+        *after, opening, _flow = new_stress.py_func(stress, 0.0, (0.0, pace, 0.0, 0.0), step, opening, 0.0, row)
         stress = tuple(after)
     xx, yy, xy, _ = stress
     p = 0.5 * (xx + yy)
@@ -50,7 +50,7 @@ def test_the_way_back_is_exact_in_one_step_where_soil_dilates_too():
     """Residual of the law for one long step, with p of the trial in the rate at which half of the growth is there."""
     soil = Material(1e6, 1590.0, sin_friction=0.5, sin_dilatancy=0.2, rate=FAST)
     stress, step, row = (1e3, 1e3, 300.0, 6e2), 1e-4, soil.row()
-    xx, yy, xy, *_, flow = new_stress(stress, 0.0, (0.0, 50.0, 0.0, 0.0), step, 0.0, row)
+    xx, yy, xy, *_, flow = new_stress(stress, 0.0, (0.0, 50.0, 0.0, 0.0), step, 0.0, 0.0, row)
     p, r = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
     half = 0.3 / 1e-3 / math.sqrt(1590.0 / 0.6) * math.sqrt(1e3)
     rate = flow / step
@@ -63,8 +63,8 @@ def test_the_way_back_is_exact_in_one_step_where_soil_dilates_too():
 @pytest.mark.parametrize("excess", [-5e3, 0.0, 5e3])
 def test_growth_of_friction_never_lifts_a_stress_beyond_its_trial(excess):
     for pace in (1e-6, 1.0, 1e4):
-        *_, still = new_stress((1e3, 1e3, 480.0, 6e2), excess, (0.0, pace, 0.0, 0.0), 1e-5, 0.0, STILL.row())
-        *_, flow = new_stress((1e3, 1e3, 480.0, 6e2), excess, (0.0, pace, 0.0, 0.0), 1e-5, 0.0, RUBS.row())
+        *_, still = new_stress((1e3, 1e3, 480.0, 6e2), excess, (0.0, pace, 0.0, 0.0), 1e-5, 0.0, 0.0, STILL.row())
+        *_, flow = new_stress((1e3, 1e3, 480.0, 6e2), excess, (0.0, pace, 0.0, 0.0), 1e-5, 0.0, 0.0, RUBS.row())
         assert 0.0 <= flow <= still
 
 
