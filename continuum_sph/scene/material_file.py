@@ -70,9 +70,11 @@ class Strengths(Section):
 
 
 class Pores(Section):
-    """permeability : K of the soil as it was packed."""
+    """permeability : K of the soil as it was packed;  hydraulic_share : of their volume that grains take up in the
+    flow, λ² of discs."""
 
     permeability: float = quantity("m^2", gt=0)
+    hydraulic_share: float = quantity("", 1.0, gt=0, le=1)
 
 
 class SofteningLaw(Section):
@@ -161,6 +163,7 @@ def with_material(table: Any, folder: Path | None) -> Any:
     if file.pores is not None:
         origin["intrinsic_permeability"] = file.pores.permeability
         taken["permeability"] = speed(file.pores.permeability, table)
+        taken["hydraulic_share"] = file.pores.hydraulic_share
     own = {key: value for key, value in soil.items() if key != "material"}
     for law, given in (("softening", file.softening), ("rate", file.rate)):
         if given is not None and isinstance(own.get(law), Mapping):  # only a scene that has the table takes it over

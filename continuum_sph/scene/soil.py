@@ -122,7 +122,8 @@ class SoilSection(Section):
     eq. 43, of plane stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would
     settle), "none", or "unconsolidated": none, and the water of its full pores bears its weight;  permeability : the
     hydraulic conductivity k of full pores, under 9.81 m/s² whatever the scene's gravity is, but with ``suction`` under
-    that of the scene;  permeability_law : how k follows the porosity;  floor, sides : of the tank, "hold" the
+    that of the scene;  permeability_law : how k follows the porosity;
+    hydraulic_share : see `continuum_sph.seepage.resistance`;  floor, sides : of the tank, "hold" the
     soil or let it "slip".
     """
 
@@ -153,6 +154,9 @@ class SoilSection(Section):
     )  # fmt: skip
     permeability_law: Literal["constant", "kozeny-carman"] = pydantic.Field(
         default="constant", description="how permeability follows the porosity"
+    )
+    hydraulic_share: float = quantity(
+        "", 1.0, ge=0.01, le=1, help='of their volume that grains take up in the flow, in "kozeny-carman": λ² of discs'
     )
     saturated: bool = pydantic.Field(False, description="pores are full at the start, up to the surface of the ground")
     water_table: float | None = quantity("m", None, ge=0, le=1e5, help="height up to which pores are full at the start")

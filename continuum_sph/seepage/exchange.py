@@ -73,14 +73,14 @@ def relative_to_soil(fluid, near, other, weight, shown, own, pores, line):
 
 
 @parallel_kernel
-def apply_drag(fluid, pores, v, law, factor, seconds, parts, push, heat):
+def apply_drag(fluid, pores, v, law, factor, share, seconds, parts, push, heat):
     """Takes the drag of ``seconds`` from the water's ``v`` (fluid…, 2) m/s; what it takes goes to `apply_reaction`.
 
     Overwrites ``push`` (fluid, 2), the impulse over the weight by which soil particles share it, and the scratch
     ``parts`` (4, fluid + LANES); adds to ``heat`` (fluid…,) J/m the work that it takes from both layers.
 
     pores: of `gather_soil`, `mix_fluxes` and `relative_to_soil`: slip and pull of now, the latter without drag;
-    law, factor: of `Resistance`.
+    law, factor, share: of `Resistance`.
     """
     lines = pores.ravel()
     width = pores.shape[1]
@@ -98,7 +98,7 @@ def apply_drag(fluid, pores, v, law, factor, seconds, parts, push, heat):
         specific_volume = own + room / partial
         soil = load(lines, SOIL * width + first, SOIL * width + end)
         sum_of = resisting / room * sharpened(soil / room)
-        kappa = maximum(drag(law, porosity, sum_of, unit, factor) * specific_volume, SLOWEST)
+        kappa = maximum(drag(law, porosity, sum_of, unit, factor, share) * specific_volume, SLOWEST)
         gone = relaxation(kappa * seconds)
         impulse = mass * own / specific_volume
         store(parts[PER_SLIP], first, end, impulse * gone)

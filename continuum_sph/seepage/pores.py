@@ -168,7 +168,10 @@ class PoreFlow(Flow):
     def drag(self, seconds: float) -> None:
         """Drag of ``seconds`` between water and soil, with the velocities and accelerations taken up last."""
         layer, soil, law = self.layer, self.skeleton, self.resistance
-        apply_drag(layer.fluid, self.pores, layer.v, law.number, law.factor, seconds, self.parts, self.push, self.heat)
+        apply_drag(
+            layer.fluid, self.pores, layer.v, law.number, law.factor, law.share, seconds, self.parts, self.push,
+            self.heat,
+        )  # fmt: skip
         apply_reaction(
             layer.fluid, *self.overlap.rows, self.push, soil.resisting, soil.mass, soil.v, seconds, self.borne,
             self.heat,

@@ -205,7 +205,7 @@ class Moisture:
         self.state[:, :2], self.state[:, VOLUME] = x, volume
         if self.resistance is not None:
             n = np.maximum(LEAST_POROSITY, 1.0 - self.grains / volume)
-            self.permeability[:] = self.given * n**3 / (1.0 - n) ** 2 / self.resistance.factor
+            self.permeability[:] = self.resistance.permeability(self.given, n)
 
     def fill(self, pressure: Floats) -> None:
         """Start from a ``pressure`` (s,) Pa in the pores of the volumes taken last."""

@@ -104,6 +104,7 @@ def _alone(it: Mapping[str, Floats]) -> dict[str, float]:
         "critical dilatancy angle": math.asin(opening / (2.0 + opening)),
         "independent critical values": independent(np.interp(np.linspace(a[0], a[-1], len(a)), a, sine)),
         "critical porosity": 1.0 - float(it["fraction"][late].mean()),
+        "porosity after the test": 1.0 - float(it["fraction"][-1]),
         "stiffness": stiffness,
         "Poisson's ratio": poisson,
     }

@@ -4,7 +4,8 @@ format          1
 [soil]          numbers that a scene of the continuum takes over: density (of grains per whole volume), porosity,
                 stiffness at the mean stress reference, poisson;  SI, angles in rad
 [strength.critical], [strength.peak]    friction_angle, dilatancy_angle: after large strains, and at failure
-[pores]         permeability: K, m², of which k = K ρ g/μ of the scene's own water
+[pores]         permeability: K, m², of which k = K ρ g/μ of the scene's own water; hydraulic_share: of their volume
+                that grains take up in the flow, λ²
 [softening]     where the peak is resolved: friction_angle after large strains, shear_strain γs, see softening.py
 [rate]          where homogenise.rates asks for it: grain_diameter, friction_angle of the fastest shear, inertial_number
                 I0 of half the growth, see shear_rate.py
@@ -28,12 +29,16 @@ SOLIDEST = 0.49
 UNITS = {
     "porosity": "", "peak friction angle": "rad", "peak dilatancy angle": "rad", "critical friction angle": "rad",
     "critical dilatancy angle": "rad", "critical porosity": "", "stiffness": "Pa", "Poisson's ratio": "",
-    "permeability": "m^2",
+    "porosity after the test": "", "permeability": "m^2", "permeability after the test": "m^2",
     "permeability over hydraulic diameter squared": "", "hydraulic solid fraction": "", "lattice error": "",
     "exponent of lambda": "", "excess with free grains at half the cells": "", "independent critical values": "",
 }  # fmt: skip
 """Of every number, in the order of tables."""
-OWN_LENGTHS = {"permeability": 0.0, "permeability over hydraulic diameter squared": 2.0}
+OWN_LENGTHS = {
+    "permeability": 0.0,
+    "permeability after the test": 0.0,
+    "permeability over hydraulic diameter squared": 2.0,
+}
 """Numbers that follow lambda, and the power of lambda that is divided out of them."""
 
 
@@ -106,6 +111,8 @@ def tables(
     whole: dict[str, Any] = {"format": FORMAT, "soil": soil, "strength": strength}
     if "permeability" in mean:
         whole["pores"] = {"permeability": mean["permeability"]}
+        if "hydraulic solid fraction" in mean:
+            whole["pores"]["hydraulic_share"] = mean["hydraulic solid fraction"] / (1.0 - mean["porosity"])
     whole |= {name: dict(law) for name, law in (laws or {}).items()}
     words = {name: name.replace(" ", "_").replace("'", "") for name in found}
     whole["measured"] = {words[name]: it.table() for name, it in found.items()}

@@ -1,4 +1,5 @@
-"""The permeability of a specimen as it stands before its test, on two lattices: what the grid leaves open is measured.
+"""The permeability of a specimen as it stands before its test, on two lattices: what the grid leaves open is measured;
+and after it, at another porosity: how K follows that.
 
 Flow along y through the whole periodic cell, discs with the radius used in the fluid, lambda times theirs, by the solid
 operator for narrow gaps (permeability.py).  The error of the lattice falls at second order or faster, so that it is at
@@ -8,14 +9,39 @@ measured on the coarser one, with discs larger by STEP: K ~ lambda^exponent; no 
 """
 
 import math
+from collections.abc import Mapping, Sequence
 
+import numpy as np
+
+from porescale.analysis.material import Known
 from porescale.analysis.permeability import Measured, measure
+from porescale.common.core.statistics import jackknife
 from porescale.common.core.types import Floats
 from porescale.coupling.limits import FOR_NARROW_GAPS, RECOMMENDED
 
 ORDER = 2
 STEP = 0.02
 """Share by which lambda is raised to see how K follows it."""
+
+
+SHEARED, LOOSENED = "permeability after the test", "porosity after the test"
+GROWTH = "growth of ln permeability with porosity"
+
+
+def known_growth(rows: Sequence[Mapping[str, float]]) -> dict[str, Known]:
+    """d ln K/dn from before the tests to after them, by least squares over the packings of ``rows`` (name and value),
+    with the interval of the jackknife; empty where flow was not measured."""
+    if not all(SHEARED in row for row in rows):
+        return {}
+    opened = np.array([row[LOOSENED] - row["porosity"] for row in rows])
+    grown = np.log([row[SHEARED] / row["permeability"] for row in rows])
+
+    def of(packings: list[int]) -> Floats:
+        """The slope (1,) through the origin of some packings."""
+        return np.array([np.sum(opened[packings] * grown[packings]) / np.sum(opened[packings] ** 2)])
+
+    values = jackknife(of, len(rows))[:, 0]
+    return {GROWTH: Known(tuple(values.tolist()))} if np.isfinite(values).all() else {}
 
 
 def flow_numbers(position: Floats, radius: Floats, box: tuple[float, float], cells: int) -> dict[str, float]:
@@ -39,6 +65,11 @@ def flow_numbers(position: Floats, radius: Floats, box: tuple[float, float], cel
         "cells": fine.cells,
         "steady": float(fine.steady and coarse.steady),
     }
+
+
+def sheared_numbers(position: Floats, radius: Floats, box: tuple[float, float], cells: int) -> dict[str, float]:
+    """K (m²) of a specimen after its test; the arguments: of `flow_numbers`."""
+    return {SHEARED: _through(position, radius, box, cells).permeability}
 
 
 def exponent(coarse: Measured, wider: Measured) -> float:

@@ -163,13 +163,17 @@ def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str,
 
 
 def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
-    """Numbers of the flow through the packing that a specimen starts with; kept beside it once they are measured."""
-    from porescale.analysis.soil_pores import STEP, flow_numbers
+    """Numbers of the flow through a specimen before and after its test; kept beside it once they are measured."""
+    from porescale.analysis.soil_pores import STEP, flow_numbers, sheared_numbers
     from porescale.common.core.atomic import write_text
     from porescale.common.record.open_run import open_run
+    from porescale.common.record.series import read_series
     from porescale.coupling.limits import FOR_NARROW_GAPS
 
-    kept, of = folder / PORES, {"lambda": ratio, "cells": cells, "step": STEP, "operator": FOR_NARROW_GAPS}
+    kept, of = (
+        folder / PORES,
+        {"lambda": ratio, "cells": cells, "step": STEP, "operator": FOR_NARROW_GAPS, "after": True},
+    )
     try:
         known = json.loads(kept.read_text(encoding="utf-8"))
         if known["of"] == of:
@@ -177,9 +181,12 @@ def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         pass  # not there, torn or of another question: measured anew
     run = open_run(folder)
-    box = float(run.card["scene"]["domain"]["width"]), float(run.card["scene"]["domain"]["height"])
-    grains = run.snapshot(0).clouds["grains"]
-    made = flow_numbers(grains.position, ratio * grains.data["radius"], box, cells)
+    width, height = float(run.card["scene"]["domain"]["width"]), float(run.card["scene"]["domain"]["height"])
+    grains, sheared = run.snapshot(0).clouds["grains"], run.snapshot(-1).clouds["grains"]
+    made = flow_numbers(grains.position, ratio * grains.data["radius"], (width, height), cells)
+    strain = {axis: float(read_series(folder / "series.csv")[f"strain {axis} ()"][-1]) for axis in ("xx", "yy")}
+    box = width * math.exp(strain["xx"]), height * math.exp(strain["yy"])
+    made |= sheared_numbers(sheared.position, ratio * sheared.data["radius"], box, cells)
     write_text(kept, json.dumps({"of": of, "numbers": made}, indent=1))
     say(f"{folder.name}: K = {made['permeability']:.3g} m^2 at {made['cells']:.3g} cells")
     return made
@@ -198,6 +205,7 @@ def write(
     from porescale.analysis.homogenise import lambda_error, packing_of, pressure_of
     from porescale.analysis.material import NAME, UNITS, known, tables, text
     from porescale.analysis.softening import known_softening
+    from porescale.analysis.soil_pores import known_growth
     from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.cli.homogenise_picture import picture
     from porescale.common.evidence.files import write_files
@@ -207,7 +215,7 @@ def write(
 
     series = [read_series(ended.folder / "series.csv") for ended in ends]
     found, of_rates = known(rows, lambda_error(scene)), known_of(rates)
-    of_softening = known_softening(series)
+    more_of_tests = known_softening(series) | known_growth(rows)
     titles = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS.items() if name in found}
     seeds = [int(ended.point.value("grains.packing.seed")) for ended in ends]
     lines = [
@@ -217,7 +225,7 @@ def write(
         for line, value in zip(lines, of_rates[name].values, strict=True):
             line[name] = value
     made = about(scene, command, ends, rows, found)
-    every = found | of_softening | of_rates
+    every = found | more_of_tests | of_rates
     more, doubts = about_rates(rates, every)
     made["doubts"] += doubts
     density = MaterialPlan.of(scene).density(packing_of(scene).material)

@@ -230,7 +230,7 @@ def seepage_flow(scene: Scene, *, hasty: bool = False) -> Seepage:
         pairs, overlap.pairs = CutPairList(pairs, pile, len(x), side, layer.v), CutPairList(overlap.pairs, pile)
     flow = PoreFlow(
         layer, law, pairs, skeleton=skeleton, overlap=overlap,
-        resistance=Resistance(section.porosity, section.permeability_law),
+        resistance=Resistance(section.porosity, section.permeability_law, share=section.hydraulic_share),
     )  # fmt: skip
     size, weight = (width, height), scene.water.density * scene.gravity
     of_tank = np.arange(len(x), layer.count - len(side))

@@ -127,7 +127,7 @@ def moist_soil(scene: Scene) -> MoistSoil:
     c = unity(smoothing.kind, smoothing.length / spacing)
     properties = properties_of(scene.water.density, scene.gravity, law, spacing, c, suction.connectivity)
     x, area = soil.x[: soil.soil], np.full(soil.soil, spacing * spacing)
-    resistance = Resistance(section.porosity, section.permeability_law)
+    resistance = Resistance(section.porosity, section.permeability_law, share=section.hydraulic_share)
     water = Moisture(
         law, properties, (1.0 - section.porosity) * area, section.permeability_at(x), section.porosity,
         resistance if resistance.number else None,

@@ -155,7 +155,7 @@ def braked(place, seconds, pores):
     np.testing.assert_allclose(pores[[SLIP_X, SLIP_Y], :n], slip[:, :n], atol=100 * eps)
     weigh.py_func(resisting, place["soil_a"], shown)
     relative_to_soil.py_func(n, *place["rows"], shown, place["a"], pores, PULL_X)
-    apply_drag.py_func(n, pores, v, law.number, law.factor, seconds, np.zeros((4, n + LANES)), push, heat)
+    apply_drag.py_func(n, pores, v, law.number, law.factor, law.share, seconds, np.zeros((4, n + LANES)), push, heat)
     apply_reaction.py_func(n, *place["rows"], push, resisting, place["soil_mass"], soil_v, seconds, borne, heat)
     return v, soil_v, heat.sum(), borne
 
@@ -237,17 +237,19 @@ def test_relaxation_is_exact_for_the_shortest_and_the_longest_times():
     assert np.abs(half + np.expm1(-times[-2000:-1800])).max() > 0.1
 
 
-@pytest.mark.parametrize("law", ["constant", "kozeny-carman"])
-def test_resistance_is_that_of_the_permeability_at_hand(law):
-    given = Resistance(POROUS, law)
+@pytest.mark.parametrize(("law", "share"), [("constant", 1.0), ("kozeny-carman", 1.0), ("kozeny-carman", 0.64)])
+def test_resistance_is_that_of_the_permeability_at_hand(law, share):
+    given = Resistance(POROUS, law, share=share)
     for porosity in (0.35, 0.4, 0.5):
         k = given.permeability(1e-4, porosity)
-        beta = drag.py_func(given.number, porosity, (1.0 - porosity) / 1e-4, 1000.0 * GRAVITY, given.factor)
+        beta = drag.py_func(given.number, porosity, (1.0 - porosity) / 1e-4, 1000.0 * GRAVITY, given.factor, share)
         assert beta == pytest.approx(porosity**2 * 1000.0 * GRAVITY / k, rel=1e-14)
     assert given.permeability(1e-4, POROUS) == pytest.approx(1e-4, rel=1e-14)
     # Kozeny 1927: k as n³/(1 - n)²
     ratio = Resistance(POROUS, "kozeny-carman").permeability(1.0, 0.5)
     assert ratio == pytest.approx((0.5**3 / 0.25) / (0.4**3 / 0.36), rel=1e-14)
+    ratio = Resistance(POROUS, "kozeny-carman", share=0.5).permeability(1.0, 0.5)  # pores of 0.75 and 0.7
+    assert ratio == pytest.approx((0.75**3 / 0.25) / (0.7**3 / 0.36), rel=1e-14)
 
 
 @pytest.mark.parametrize("law", ["constant", "kozeny-carman"])
@@ -257,7 +259,7 @@ def test_drag_is_finite_where_grains_only_just_reach_the_water(law):
     pores[DENSITY], pores[WEIGHT], pores[MASSES], pores[RESISTING] = 1000.0, 1000.0 * GRAVITY, 1e-14, 1e-15
     pores[SOIL] = 1e-17
     v, push, heat = np.zeros((1, 2)), np.zeros((1, 2)), np.zeros(1)
-    apply_drag.py_func(1, pores, v, given.number, given.factor, 1e-3, np.zeros((4, 1 + LANES)), push, heat)
+    apply_drag.py_func(1, pores, v, given.number, given.factor, given.share, 1e-3, np.zeros((4, 1 + LANES)), push, heat)
     assert np.isfinite([*v[0], *push[0], heat[0]]).all()
     assert np.abs(v).max() < 1e-9  # hardly any drag
 

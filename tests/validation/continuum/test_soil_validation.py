@@ -1,6 +1,7 @@
 """What must fail where rows of soil hold, and the cases of soil at their default quality."""
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.soil import Material, Rate, SoilLaw, parameters
-from continuum_sph.validation.soil import bodies, element, energy, fast_flow, run_outs, setups, slopes
+from continuum_sph.validation.soil import bodies, element, energy, fast_flow, run_outs, setups, slopes, softening
 from tests.reference.continuum import continuum_cases
 from tests.reference.continuum.continuum_cases import missed
 from tests.reference.folders import script
@@ -83,6 +84,18 @@ def test_fine_soil_that_does_not_swell_where_it_crowds_sinks(monkeypatch):
     # 0.045 m with 80 rows
     monkeypatch.setattr(parameters, "STREWN", math.inf)
     assert slopes.sunk.__wrapped__(80) > tolerance("continuum.soil_that_slides_keeps_its_height")
+
+
+def test_an_element_that_softens_over_twice_the_strain_is_too_strong():
+    slow = replace(softening.SAND, softening=replace(softening.SAND.softening, shear_strain=2.0 * softening.STRAIN))
+    exact = softening.exact_element(softening.PRESSED)
+    assert softening.element(slow)[0] - exact[0] > 5.0 * tolerance("continuum.soil_softens_as_told")
+
+
+@pytest.mark.slow
+def test_particles_that_soften_by_their_strain_whatever_the_spacing_are_too_weak():
+    """As if their band were four times as wide as it is."""
+    assert softening.course(20, band=0.4) > 2.0 * tolerance("continuum.soil_softens_by_slip")
 
 
 @pytest.mark.slow
