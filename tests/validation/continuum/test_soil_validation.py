@@ -105,6 +105,13 @@ def test_soil_of_another_rate_flows_otherwise(rate):
 
 
 @pytest.mark.slow
+def test_clay_that_keeps_its_strength_stands():
+    found = series("clay_cut", "soil.softening.cohesion=17 kPa")
+    assert missed("clay_cut", found) == ["the cut fails", "it has begun after a second"]
+    assert found["mean displacement (m)"][-1] < 0.01
+
+
+@pytest.mark.slow
 def test_a_slope_beyond_its_limit_fails():
     assert slopes.slope(38.0, 2.0) > 100.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
 
@@ -115,7 +122,7 @@ def test_stress_diffused_by_sound_lets_a_slope_creep():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", ["geostatic_column", "dry_slope", "soil_column_collapse"])
+@pytest.mark.parametrize("case", ["geostatic_column", "dry_slope", "soil_column_collapse", "clay_cut"])
 def test_soil_does_as_its_case_says(case):
     assert missed(case, series(case)) == []
 
