@@ -23,6 +23,8 @@ from porescale.common.schema.sections import Refused, Section, quantity, validat
 
 FORMAT = 1
 """Of the files that are read here."""
+CONDUCTING = "kozeny-carman"
+"""The law of permeability that has a share of grains in the flow."""
 DENSITY, VISCOSITY = 1000.0, 1.002e-3
 """Density and viscosity of the water of a scene that gives none, kg/m³ and Pa s: the defaults of [water]."""
 
@@ -163,7 +165,8 @@ def with_material(table: Any, folder: Path | None) -> Any:
     if file.pores is not None:
         origin["intrinsic_permeability"] = file.pores.permeability
         taken["permeability"] = speed(file.pores.permeability, table)
-        taken["hydraulic_share"] = file.pores.hydraulic_share
+        if soil.get("permeability_law") == CONDUCTING:  # another law has no share
+            taken["hydraulic_share"] = file.pores.hydraulic_share
     own = {key: value for key, value in soil.items() if key != "material"}
     for law, given in (("softening", file.softening), ("rate", file.rate)):
         if given is not None and isinstance(own.get(law), Mapping):  # only a scene that has the table takes it over

@@ -7,7 +7,7 @@ import numpy as np
 import pydantic
 from numpy.typing import NDArray
 
-from continuum_sph.scene.material_file import Origin
+from continuum_sph.scene.material_file import CONDUCTING, Origin
 from continuum_sph.scene.rate import RateSection
 from continuum_sph.scene.softening import SofteningSection
 from continuum_sph.scene.suction import SuctionSection
@@ -225,6 +225,10 @@ class SoilSection(Section):
         if self.stress == "unconsolidated" and (not self.saturated or self.held):
             repair = 'give soil.saturated = true and soil.held = false, or stress "geostatic"'
             found.append(Fault("soil.stress", self.stress, "is of ground with full pores that may move", repair=repair))
+        if self.hydraulic_share != 1.0 and self.permeability_law != CONDUCTING:
+            repair = f'soil.permeability_law = "{CONDUCTING}"'
+            problem = "is of a law that the scene does not have"
+            found.append(Fault("soil.hydraulic_share", self.hydraulic_share, problem, repair=repair))
         for part in (self.rate, self.softening):
             found += part.faults(self) if part else []
         if self.dilatancy_angle > self.friction_angle:

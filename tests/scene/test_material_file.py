@@ -245,3 +245,14 @@ def test_numbers_beyond_what_a_soil_can_be_are_refused_by_the_scene(tmp_path):
     )
     with pytest.raises(InputError, match=r"soil\.dilatancy_angle"):
         scene(tmp_path)
+
+
+def test_the_share_of_grains_in_the_flow_goes_to_the_law_that_has_one(tmp_path):
+    rows = [row | {"hydraulic solid fraction": 0.64 * (1.0 - row["porosity"])} for row in ROWS]
+    material(tmp_path, rows)
+    assert scene(tmp_path).soil.hydraulic_share == 1.0
+    law = 'permeability_law = "kozeny-carman"\n'
+    assert scene(tmp_path, law).soil.hydraulic_share == pytest.approx(0.64)
+    assert scene(tmp_path, law + "hydraulic_share = 0.9\n").soil.hydraulic_share == 0.9
+    with pytest.raises(InputError, match=r"soil\.hydraulic_share.*is of a law that the scene does not have"):
+        scene(tmp_path, "hydraulic_share = 0.9\n")
