@@ -73,6 +73,12 @@ def seepage_report(scene: Scene) -> Report:
     if scene.air:
         air_report(out, scene, law, air)
     cost(scene, out, law, step, Counts(len(soil), water + air, waiting))
+    table = scene.soil.water_table if scene.soil else None
+    if table is not None and table > max(section.height, scene.highest) * (1.0 + WHOLE):
+        out.warn(
+            f"soil.water_table lies over all ground and water, {table - section.height:.3g} m over the highest ground: "
+            "pores are full to their surface; water above it is that of [[water.column]] or [[reservoir]]"
+        )
     report_rate(out, section, wet=True)
     warn_of_steep_faces(scene, out)
     report_origin(out, section.origin)
