@@ -18,8 +18,9 @@ from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.reservoir import ReservoirSection, reservoir_faults
 from continuum_sph.scene.soil import SoilSection
 from continuum_sph.scene.tank import TankSection
-from continuum_sph.scene.water import Column, WaterSection
+from continuum_sph.scene.water import WaterSection
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.dividing import dividing
 from porescale.common.core.errors import Fault
 from porescale.common.schema.look import LookSection
 from porescale.common.schema.names import name_faults
@@ -267,16 +268,19 @@ class Scene(SceneBase):
                     f">= {finest:.3g}",
                 )
             )
-        held: list[tuple[str, TankSection | Column]] = [("tank", tank)]
-        held += [(f"water.column[{index}]", column) for index, column in enumerate(self.water.column)]
-        for key, body in held:
-            for name in ("left", "bottom", "width", "height") if isinstance(body, Column) else ("width", "height"):
-                length = getattr(body, name)
-                share, whole = length / spacing, spacings(length, spacing)
-                if length > 0.0 and abs(share - whole) > WHOLE * max(1.0, share):
-                    problem = f"is {share:.6g} spacings of {spacing:.6g} m, not whole ones"
-                    faults.append(
-                        Fault(f"{key}.{name}", length, problem, "m",
-                              repair=f"{whole * spacing:.9g} m or a spacing of {length / whole:.9g} m would be")
-                    )  # fmt: skip
+        lengths = {"tank.width": tank.width, "tank.height": tank.height}
+        for index, column in enumerate(self.water.column):
+            lengths |= {
+                f"water.column[{index}].{it}": getattr(column, it) for it in ("left", "bottom", "width", "height")
+            }
+        lengths = {key: it for key, it in lengths.items() if it > 0.0}
+        shares = {key: it / spacing for key, it in lengths.items()}
+        uneven = [key for key, it in shares.items() if abs(it - spacings(lengths[key], spacing)) > WHOLE * max(1.0, it)]
+        better = dividing(list(lengths.values()), spacing, WHOLE) if uneven else None
+        for key in uneven:
+            whole = spacings(lengths[key], spacing)
+            another = f"a spacing of {better or lengths[key] / whole:.9g} m"
+            problem = f"is {shares[key]:.6g} spacings of {spacing:.6g} m, not whole ones"
+            repair = f"{whole * spacing:.9g} m would be, or with {another}{' all lengths' if better else ''}"
+            faults.append(Fault(key, lengths[key], problem, "m", repair=repair))
         return faults

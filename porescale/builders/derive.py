@@ -24,6 +24,7 @@ from porescale.builders.initial.packing import radii_of
 from porescale.builders.initial.placed import by_hand, packed_count, placed
 from porescale.builders.initial.rock import rock_frames
 from porescale.builders.scene import Scene
+from porescale.common.core.dividing import dividing
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
@@ -34,7 +35,7 @@ from porescale.scene.bodies.gate import Gate
 from porescale.scene.contact import Contact
 from porescale.scene.domain import Domain
 from porescale.scene.fluid import Fluid
-from porescale.scene.lattice import is_whole
+from porescale.scene.lattice import WHOLE, is_whole
 
 MANY = 1e6
 """Contact steps in a step of the fluid beyond which a unit is probably wrong."""
@@ -208,21 +209,21 @@ def _lattice(
     """Scales, cells, and the column that the gate stands left of."""
     scales = fluid_scales(fluid)
     h = scales.spacing
-    _whole("domain.width", domain.width, h, faults)
-    _whole("domain.height", domain.height, h, faults)
-    if gate:
-        _whole("gate.x", gate.x, h, faults)
+    lengths = {"domain.width": domain.width, "domain.height": domain.height} | ({"gate.x": gate.x} if gate else {})
+    faults += _uneven(lengths, h)
     return scales, (round(domain.width / h), round(domain.height / h)), round(gate.x / h) if gate else None
 
 
-def _whole(key: str, length: float, spacing: float, faults: list[Fault]) -> None:
-    cells = length / spacing
-    if not is_whole(length, spacing):
-        better = length / max(1, round(cells))
-        faults.append(
-            Fault(key, length, f"is {cells:.6g} cells of {spacing:.6g} m, not a whole number", "m",
-                  repair=f"a spacing of {better:.9g} m divides it")
-        )  # fmt: skip
+def _uneven(lengths: dict[str, float], spacing: float) -> list[Fault]:
+    """A fault for each of the lengths that is no whole number of cells; names a spacing that divides all of them."""
+    uneven = {key: it for key, it in lengths.items() if not is_whole(it, spacing)}
+    better = dividing(list(lengths.values()), spacing, WHOLE) if uneven and min(lengths.values()) > 0.0 else None
+    return [
+        Fault(key, it, f"is {it / spacing:.6g} cells of {spacing:.6g} m, not a whole number", "m",
+              repair=f"a spacing of {better:.9g} m divides {'them all' if len(uneven) > 1 else 'it and the rest'}"
+              if better else f"a spacing of {it / max(1, round(it / spacing)):.9g} m divides it")
+        for key, it in uneven.items()
+    ]  # fmt: skip
 
 
 def _contact_step(

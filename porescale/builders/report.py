@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from porescale.analysis.permeability import bed_of_spheres, gebart, kozeny_carman, ratio_for
-from porescale.builders.checks.clear_packing import require_clear_packing, require_first_bonds
+from porescale.builders.checks.clear_packing import require_bonds, require_clear_packing
 from porescale.builders.checks.device import device_of
 from porescale.builders.cost import (
     memory,
@@ -46,7 +46,7 @@ def report(scene: Scene) -> Report:
     derived = derive(scene)
     require_memory(scene, derived)
     require_clear_packing(scene, derived)
-    of_bonds = require_first_bonds(scene, derived)
+    of_bonds = require_bonds(scene, derived)
     out = Report(scene.title or "scene")
     _parts(scene, out)
     if derived.scales:

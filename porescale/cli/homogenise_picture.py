@@ -49,7 +49,7 @@ def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known], r
             right.errorbar(1.0, place, xerr=it.interval / abs(it.mean), fmt="o", color="#8c1c2f", ms=4, capsize=4)
     right.set_yticks(range(len(names)), [f"{name}\n{found[name].text()}" for name in names], fontsize=7)
     right.invert_yaxis()
-    right.set_xlabel("of the mean; dots: packings, bars: intervals at 95 %")
+    right.set_xlabel("of the mean; dots: packings,\nbars: intervals at 95 %")
     return png(figure, 100)
 
 

@@ -144,6 +144,8 @@ def test_another_ring_is_told_apart():  # the twin that must fail
     [
         ({"ring": {**RING, "x": 0.002}},
          "ring.x = 0.002 m: the ring reaches out of the box (allowed: 0.0032 to 0.0088 m)"),
+        ({"ring": {**RING, "diameter": 0.0125}},
+         "ring.x = 0.00604 m: the ring reaches out of the box; make ring.diameter 0.012 m at most"),
         ({"ring": {**RING, "radius": 1}}, "ring.radius = 1: unknown key"),
         ({"ring": RING, "disc": [{**DISC, "x": 0.003}]}, "disc[0]: stands in the ring"),
         ({"ring": RING, "disc": [{**DISC, "velocity": [0.4, 0]}]}, "disc[0]: runs into the ring after 0.006"),

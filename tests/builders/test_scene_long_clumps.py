@@ -105,3 +105,39 @@ def test_check_refuses_what_has_no_shares_with_the_line_of_the_run(monkeypatch):
             read(scene(row, 0.7))
         assert str(caught.value) == line
     ps.check(scene(row, 1.0))
+
+
+def across(shift):
+    """Positions (3, 2) m of a grain and a clump of two discs that it hits in a box without sides, all moved by x, y m.
+
+    The clump reaches over a side, disc and all, once it is moved far enough.
+    """
+    side = 20 * R
+    at = [(x + shift) % side for x in (5.3 * R, 6.6 * R, 13.3 * R, 7.3 * R)]
+    sides = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
+    made = ps.build(ps.Scene(
+        domain={"width": side, "height": side, **sides}, gravity=(0.0, 0.0), time={"end": 0.05},
+        output={"snapshot_interval": 0.05, "series_interval": 0.05}, contact={"stiffness": 1e4, "restitution": 0.5},
+        grains={"density": 2500, "grain": [{"x": at[2], "y": at[3], "diameter": 2.6 * R, "velocity": [-0.2, 0.02]}]},
+        clump=[{"discs": [[-1.3 * R, 0, 1.6 * R], [1.3 * R, 0, 1.6 * R]], "at": [at[:2]], "angle": [0.3],
+                "velocity": [0.05, 0.01], "spin": 5.0}],
+    ))  # fmt: skip
+    made.run()
+    return made.positions, at
+
+
+def test_a_clump_may_lie_across_a_periodic_side():
+    side, (still, _) = 20 * R, across(0.0)
+    for shift in (13.6 * R, 14.5 * R):  # its middle lies within the box, that of one disc beyond
+        moved, at = across(shift)
+        assert max(at[:2]) + 1.3 * R * np.cos(0.3) > side
+        apart = (moved - still - shift + 0.5 * side) % side - 0.5 * side
+        # Each of some 50 steps rounds places to eps of the side, and the impact multiplies that by ten or so.
+        assert np.abs(apart).max() < 1e3 * np.finfo(float).eps * side
+    with pytest.raises(InputError, match=r"clump\[0\] = '.*': reaches out of the box by 0.0001 m"):
+        ps.check(ps.Scene(
+            domain={"width": side, "height": side, "left": "periodic", "right": "periodic"}, time={"end": 0.05},
+            output={"snapshot_interval": 0.05, "series_interval": 0.05}, grains={"density": 2500},
+            contact={"stiffness": 1e4, "restitution": 0.5},
+            clump=[{"discs": [[-R, 0, R], [R, 0, R]], "at": [[side + 0.1 * R, 5 * R]]}],
+        ))  # fmt: skip

@@ -1,5 +1,6 @@
 """Bonds and rock of dry scenes: when and between whom they are made, what they bear, and runs that go on with them."""
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from porescale.builders.build import build
 from porescale.builders.derive import derive
 from porescale.builders.initial.rock import rock_discs
 from porescale.builders.report import report
-from porescale.common.core.errors import InputError, Unstable
+from porescale.common.core.errors import InputError, PorescaleWarning, Unstable
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.prepare.rock import rock as made_by_hand
 from porescale.output.frame_pictures import cracks
@@ -123,6 +124,8 @@ def test_cracks_lie_along_the_common_side():
         ({"bodies": ["polygon 7"]}, "bonds[0].bodies[0] = 'polygon 7': there is no such body (allowed: of polygon)"),
         ({"within": [5e-3, 5e-3, 6e-3, 6e-3]}, "bonds[0].at = 0.0 s: nothing touches, so there is nothing to bond"),
         ({"known": [[0, 99, 0, 1.0]]}, "bonds[0].known[0]: there are 12 discs and corners, and 12 segments"),
+        ({"bodies": ["polygon 7"], "at": 2e-4}, "bonds[0].bodies[0] = 'polygon 7': there is no such body"),
+        ({"known": [[0, 99, 0, 1.0]], "at": 2e-4}, "bonds[0].known[0]: there are 12 discs and corners"),
     ],
 )
 def test_bonds_between_nobody_are_refused(bonds, line):
@@ -241,6 +244,19 @@ def test_bonds_that_press_bodies_into_each_other_are_warned_of():
     with pytest.raises(Unstable, match="overlap with grain 1 over radius"):
         simulation.check()
     assert not [it for it in report(pair(5e4, {"tension": 50.0})).warnings if "into each other" in it]
+
+
+def test_bonds_that_are_made_later_are_warned_of_when_they_are_made():
+    later = {"at": 1.2e-3}  # before the third step of 0.62 ms; their contact lasts for five
+    simulation = build(pair(1e5, {**later, "tension": 50.0}))
+    simulation.advance(1)
+    with pytest.warns(PorescaleWarning, match="t = 0.0012.* s: a bond of 50 N/m is .* times what its contact carries"):
+        simulation.advance(2)
+    assert simulation.series()["bonds ()"] == 1.0
+    with pytest.warns(PorescaleWarning, match=r"bonds\[0\] makes no bond, as nothing touches"):
+        build(pair(1e5, {"at": 5e-3, "tension": 50.0})).advance(10)
+    with warnings.catch_warnings(action="error"):  # the twin that must fail
+        build(pair(1e5, later)).advance(6)
 
 
 @pytest.mark.parametrize("bonds", [{}, {"factor": 1.5}, {"factor": 5.0}])

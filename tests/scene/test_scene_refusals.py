@@ -109,8 +109,9 @@ TWICE = {"gate__x": 0.0081}, {"gate__x": 0.009}, {"grains__packing__left": 0.009
         ({"contact__damping": 1.0}, BOTH, None),
         ({"contact__restitution": None}, BOTH, None),
         ({"gate__x": 0.013}, "gate.x = 0.013 m: is outside the box (allowed: < 0.012 m)", ""),
-        # The repair is a spacing that divides it: 0.0081/40.  And it stands in the packing.
-        ({"gate__x": 0.0081}, "gate.x = 0.0081 m: is 40.5 cells of 0.0002 m, not a whole number", "0.0002025 m"),
+        # The repair is a spacing that divides it and both sides of the box.  And it stands in the packing.
+        ({"gate__x": 0.0081},
+         "gate.x = 0.0081 m: is 40.5 cells of 0.0002 m, not a whole number", "0.0001 m divides it and the rest"),
         ({"gate__x": 0.009}, "gate.x = 0.009 m: stands in the packing, which reaches from 0.008 to 0.012 m", ""),
         ({"domain__width": 0.0121},
          "domain.width = 0.0121 m: is 60.5 cells of 0.0002 m, not a whole", "number; a spacing of"),

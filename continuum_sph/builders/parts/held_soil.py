@@ -21,7 +21,6 @@ class HeldSoilPart(Part):
     """Soil that is held: it has no stress, no displacement and no columns."""
 
     key = "soil"
-    pressure = "pore_pressure"  # what stands for it in a snapshot of both layers
 
     def __init__(self, scene: Scene, flow: PoreFlow) -> None:
         self.section, self.flow, self.skeleton = soil_section(scene), flow, flow.skeleton

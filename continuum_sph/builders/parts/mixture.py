@@ -53,7 +53,6 @@ class WetSoilPart(SoilPart):
     """The soil, as of a tank without water, whose columns begin with "soil: "; `MixturePart` shows it."""
 
     key = "soil"
-    pressure = "mean_stress"  # what stands for it in a snapshot of both layers
 
     def row(self) -> dict[str, float]:
         """The columns of soil alone, with the prefix "soil: "."""
@@ -123,13 +122,13 @@ class MixturePart(Part):
         parts = (
             ("layer", np.full(len(water.position), WATER), np.full(len(air.position), AIR), kind),
             *((key, water.data[key], air.data[key], soil.data[key]) for key in ("velocity", "porosity")),
-            ("pressure", water.data["pressure"], air.data["pressure"], soil.data[self.soil.pressure]),
+            ("pressure", water.data["pressure"], air.data["pressure"], flow.pore_pressure()),
         )
         data = {name: np.concatenate(values) for name, *values in parts}
         units = {"velocity": "m/s", "pressure": "Pa"}
         whole = Cloud(np.concatenate((water.position, air.position, soil.position)), data, units)
         weight = -self.flow.water.law.state.density * self.flow.water.law.gravity[1]
-        if self.soil.pressure == HeldSoilPart.pressure and weight > 0.0 and not self.air:
+        if isinstance(self.soil, HeldSoilPart) and weight > 0.0 and not self.air:
             data["head"], units["head"] = data["pressure"] / weight + whole.position[:, 1], "m"
         return {"particles": whole, "water": water, "soil": soil} | ({"air": air} if self.air else {})
 
@@ -139,8 +138,8 @@ class MixturePart(Part):
 
     def show(self, snapshot: Snapshot) -> None:
         """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
-        pressure (of soil mean effective stress, of soil that is held that of its water), porosity, and in ground that
-        is held and without air the head of the water."""
+        pressure (of soil that of the water about it, no number where there is none), porosity, and in ground that is
+        held and without air the head of the water."""
         snapshot.clouds |= self._clouds()
 
     def state(self) -> dict[str, Any]:

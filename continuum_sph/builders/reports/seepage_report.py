@@ -22,6 +22,7 @@ from continuum_sph.builders.reports.time_report import MOVING_SOIL, OPENING, POR
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.soil import SoilSection
 from continuum_sph.seepage.step import SHARE
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import RATIO
@@ -42,6 +43,7 @@ STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a 
 BROAD, APART = 6.0, 3.0  # spacings of open water in a strip that keeps its level, and from it to the ground
 PIECES = 100  # of a run, to add up what passes a face whose head rises
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
+HEAVIEST = 4000.0  # kg/m³, of grains: quartz has 2650, basalt 3000, garnet up to 4300
 
 
 def seepage_report(scene: Scene) -> Report:
@@ -73,6 +75,12 @@ def seepage_report(scene: Scene) -> Report:
     if scene.air:
         air_report(out, scene, law, air)
     cost(scene, out, law, step, Counts(len(soil), water + air, waiting))
+    table = scene.soil.water_table if scene.soil else None
+    if table is not None and table > max(section.height, scene.highest) * (1.0 + WHOLE):
+        out.warn(
+            f"soil.water_table lies over all ground and water, {table - section.height:.3g} m over the highest ground: "
+            "pores are full to their surface; water above it is that of [[water.column]] or [[reservoir]]"
+        )
     report_rate(out, section, wet=True)
     warn_of_steep_faces(scene, out)
     report_origin(out, section.origin)
@@ -135,6 +143,7 @@ def moving(scene: Scene, out: Report, law: Law, stiff: float) -> float:
     out.row("longest step for its sound", min(ground.limits(0.0, sound / ground.smoothing.length, float("inf"))), "s")
     report_stiffness(out, stiff, porosity * modulus, density)
     out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
+    warn_of_heavy_grains(out, section)
     least, _ = section.permeabilities
     spread = least * modulus / (density * GRAVITY)
     out.row("consolidation coefficient", spread, "m2/s")
@@ -156,6 +165,16 @@ def report_stiffness(out: Report, stiff: float, modulus: float, density: float) 
         out.warn(
             f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.0f} %; "
             f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
+        )
+
+
+def warn_of_heavy_grains(out: Report, section: SoilSection) -> None:
+    """A warning where density and porosity make grains heavier than minerals are: often it was given as theirs."""
+    grains = section.density / (1.0 - section.porosity)
+    if grains > HEAVIEST:
+        out.warn(
+            f"soil.density = {section.density:.4g} kg/m³ is of grains per whole volume, which at a porosity of "
+            f"{section.porosity:.3g} makes grains of {grains:.4g} kg/m³: (1 - n) times theirs is meant"
         )
 
 

@@ -58,12 +58,11 @@ def check_grain_places(scene: Scene, sizes: tuple[float, float, float] | None, f
         return
     # as deep as in another of its size: a share of the diameter
     box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - 2 * _touch(scene))
-    beyond = np.where(_periodic(scene.domain), (x < 0) | (x > box), (x < inner) | (x > box - inner)).any(axis=1)
+    periodic, at = _periodic(scene.domain), _middles(scene, x)
+    beyond = np.where(periodic, (at < 0) | (at > box), (x < inner) | (x > box - inner)).any(axis=1)
     if beyond.any():
         k = int(beyond.argmax())
-        out = np.where(
-            _periodic(scene.domain), np.maximum(-x, x - box), np.maximum(r[:, None] - x, x + r[:, None] - box)
-        )
+        out = np.where(periodic, np.maximum(-at, at - box), np.maximum(r[:, None] - x, x + r[:, None] - box))
         problem = f"reaches out of the box by {float(out[k].max()):.3g} m"
         faults.append(_misplaced(names[k], x[k], problem, "move it inside by its radius"))
     if scene.gate:
@@ -74,6 +73,15 @@ def check_grain_places(scene: Scene, sizes: tuple[float, float, float] | None, f
             faults.append(_misplaced(names[k], x[k], problem, "move one of them"))
     faults += across_walls(scene, x, r, names, _touch(scene))
     _check_overlap(x, r, scene, names, 0, faults)
+
+
+def _middles(scene: Scene, x: Floats) -> Floats:
+    """Centres (n, 2) m, of discs of a clump the mean of them all: some may lie beyond a side that is periodic."""
+    at, numbers = x.copy(), np.array(hand_names(scene)[1], int)
+    for number in range(numbers.max(initial=-1) + 1):
+        own = np.flatnonzero(numbers == number)
+        at[own] = x[own].mean(axis=0)
+    return at
 
 
 def require_apart(discs: Discs, scene: Scene, packed: int) -> None:

@@ -53,7 +53,10 @@ def check_ring(scene: Scene) -> list[Fault]:
     for key, at, size in (("x", ring.x, d.width), ("y", ring.y, d.height)):
         if not radius <= at <= size - radius:
             problem, allowed = "the ring reaches out of the box", f"{radius:g} to {size - radius:g}"
-            faults.append(Fault(f"ring.{key}", at, problem, "m", allowed, "move it, or make it smaller"))
+            repair = "move it, or make it smaller"
+            if 2.0 * radius > size:
+                allowed, repair = "", f"make ring.diameter {size:g} m at most"
+            faults.append(Fault(f"ring.{key}", at, problem, "m", allowed, repair))
     for k, it in enumerate(scene.disc):
         times, centres = path_of(it, scene.time.end)
         out = np.hypot(*(centres - (ring.x, ring.y)).T) + 0.5 * it.diameter > radius + TOUCH * 0.5 * it.diameter

@@ -6,17 +6,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.builders.initial.contact_laws import law_class
 from porescale.builders.initial.frames import Placed, disc_count
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.part import Part
 from porescale.dem.bodies.bonding import bond, segments_now
 from porescale.dem.bodies.rigid import as_bodies
-from porescale.dem.forces.bonds import BondList, touched
+from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.grains import Grains
 from porescale.dem.motion.drivers import Clump as ClumpNumber
+from porescale.dem.sanity import WORST_OVERLAP
 from porescale.output.frame_clouds import BONDS
 from porescale.scene.bodies.bonds import KINDS, Bonds
 
@@ -70,44 +72,103 @@ class BondsPart(Part):
         own = [(f"bonds[{k}]", it) for k, it in enumerate(system.scene.bonds)]
         self.sections = sorted([*whole, *own], key=lambda it: it[1].at)
         self.chosen = [self.bodies.chosen(it.bodies, key) for key, it in self.sections]
+        for key, section in self.sections:
+            self._require_numbers(key, section)
+        contact = system.scene.contact
+        self.linear = contact is not None and law_class(contact).compresses
         self.made = 0
         self.before()  # what is bonded at time 0 is there in the first record
 
     def before(self) -> None:
-        """Bond what is to be bonded in the step that begins nearest to its time."""
+        """Bond what is to be bonded in the step that begins nearest to its time.  Warns of what pulls too hard but at
+        time 0, as what contacts carry later is not known before."""
         time, step = self.clock.time, self.clock.seconds
         while self.made < len(self.sections) and time >= self.sections[self.made][1].at - 0.5 * step:
             key, section = self.sections[self.made]
+            before = 0 if self.grains.bonds is None else len(self.grains.bonds.back)
             if section.known:
-                self._join(key, section)
-                self.made += 1
+                self._join(section)
+                self._made(before)
                 continue
             bodies = self._within(self.chosen[self.made], section)
-            before = 0 if self.grains.bonds is None else len(self.grains.bonds.back)
             count = bond(self.grains, [self.bodies.named[body] for body in bodies])
-            if not count and section.at == 0.0:
+            if count:
+                own = self.grains.bonds.back[before:]  # type: ignore[union-attr]
+                own *= section.factor if section.tension is None else section.tension / float(np.mean(own[own > 0.0]))
+            elif section.at == 0.0:
                 problem, repair = "nothing touches, so there is nothing to bond", "bond later, or place bodies closer"
                 raise InputError(Fault(f"{key}.at", section.at, problem, "s", repair=repair))
-            bonds = self.grains.bonds
-            assert bonds is not None
-            own = bonds.back[before:]
-            factor = section.factor if section.tension is None else section.tension / float(np.mean(own[own > 0.0]))
-            if count and factor != 1.0:
-                own *= factor
-            self.made += 1
+            else:
+                warn(f"t = {time:.6g} s: {key} makes no bond, as nothing touches")
+            self._made(before)
 
-    def _join(self, key: str, section: Bonds) -> None:
-        """The bonds that a section gives by number; raises InputError at a number that there is not."""
-        grains = self.grains
+    def _made(self, first: int) -> None:
+        """Count a section whose bonds are those from ``first`` on, and warn of later ones that pull too hard."""
+        self.made += 1
+        for text in self.doubts(first) if self.clock.time > 0.0 else []:
+            warn(f"t = {self.clock.time:.6g} s: {text}")
+
+    def _join(self, section: Bonds) -> None:
+        """The bonds that a section gives by number."""
         ends = np.array([row[:3] for row in section.known], np.int64)
+        made = BondList(ends, np.array([row[3] for row in section.known]))
+        self.grains.bonds = made if self.grains.bonds is None else self.grains.bonds.joined(made)
+
+    def _require_numbers(self, key: str, section: Bonds) -> None:
+        """InputError where a section gives a bond by a number that there is not."""
+        grains = self.grains
+        ends = np.array([row[:3] for row in section.known], np.int64).reshape(-1, 3)
         segments = 0 if grains.segments is None else len(grains.segments.ends)
         most = np.where(ends[:, 2] == 1, segments, grains.discs.count)
         bad = np.flatnonzero((ends < 0).any(axis=1) | (ends[:, 0] >= grains.discs.count) | (ends[:, 1] >= most))
         if len(bad):
             problem = f"there are {grains.discs.count} discs and corners, and {segments} segments"
             raise InputError(Fault(f"{key}.known[{bad[0]}]", None, problem, repair="number them from 0"))
-        made = BondList(ends, np.array([row[3] for row in section.known]))
-        grains.bonds = made if grains.bonds is None else grains.bonds.joined(made)
+
+    def doubts(self, first: int = 0) -> list[str]:
+        """Warnings about the bonds from number ``first`` on that pull too hard, as they are now.
+
+        A bond of tension b on a contact of overlap d that carries f sets its bodies into motion with (b - f)/m, m their
+        reduced mass.  Where that is more than d in a step, (b - f) dt²/m > d, steps decide whether they part when they
+        come back, with an error of energy of order b²dt²/m, of any size beside that of the motion before.  Under a
+        linear law without damping they swing to an overlap of 2 b/k - d, k = f/d.
+        """
+        grains, bonds, seconds = self.grains, self.grains.bonds, self.clock.seconds
+        if bonds is None:
+            return []
+        d, segments, n = grains.discs, segments_now(grains), len(bonds.back)
+        way, far, other, carried = np.zeros((n, 2)), np.zeros((n, 2)), np.zeros(n, np.int64), np.zeros(n)
+        touched(d.position, bonds.ends, segments, grains.cell, way, far, other)
+        pressing(
+            d.position, d.radius, grains.body_mass, grains.material, bonds.ends, segments, grains.contact, grains.cell,
+            carried,
+        )  # fmt: skip
+        here = bonds.ends[:, 0]
+        overlap = d.radius[here] + d.radius[other] - np.hypot(way[:, 0], way[:, 1])
+        apart = (np.arange(n) >= first) & (carried > 0.0) & (overlap > 0.0) & (bonds.back > carried)
+        if not apart.any():
+            return []
+        one, two = grains.body_mass[here], grains.body_mass[other]
+        pull, carried, overlap, mass = (it[apart] for it in (bonds.back, carried, overlap, one * two / (one + two)))
+        found, at_most = [], carried + overlap * mass / seconds**2
+        if (pull > at_most).any():
+            k = int(np.argmax(pull / at_most))
+            found.append(
+                f"a bond of {pull[k]:.3g} N/m is {pull[k] / carried[k]:.2g} times what its contact carries, and moves "
+                f"its bodies in a step by more than its overlap of {overlap[k]:.2g} m: whether it breaks, and with "
+                f"what energy, is left to the steps, which resolve {at_most[k]:.2g} N/m at most: press bodies together "
+                "before they are bonded (bonds.at), or lower bonds.factor or tension"
+            )
+        limit = WORST_OVERLAP * np.minimum(d.radius[here], d.radius[other])[apart]
+        deepest = (2.0 * pull / carried - 1.0) * overlap
+        if self.linear and (deepest > limit).any():
+            k = int(np.argmax(deepest / limit))
+            found.append(
+                f"a bond of {pull[k]:.3g} N/m draws its bodies into each other by up to {deepest[k]:.2g} m, and beyond "
+                f"{limit[k]:.2g} m, {WORST_OVERLAP:g} of the radius, a run stops: contacts "
+                f"{1.1 * deepest[k] / limit[k]:.2g} times as stiff suffice, or lower bonds.factor or tension"
+            )
+        return found
 
     def _within(self, bodies: list[Body], section: Bonds) -> list[Body]:
         """Those with their centre in the rectangle of a section."""

@@ -38,9 +38,7 @@ def measure(run: Run, program: Program, given: Sequence[Any], sections: Mapping[
     if not asked or program.measure is None:
         allowed = ", ".join(f"[[{key}]]" for key in program.measured)
         raise InputError(Fault("sections", None, "nothing to measure", allowed=allowed, repair="give one of them"))
-    if not len(run):
-        repair = "let it run until its first snapshot"
-        raise InputError(Fault("run folder", str(run.folder), "has no snapshots", repair=repair))
+    run.require_snapshots()
     card = run.card
     kept = {key: value for key, value in card["scene"].items() if key not in program.measured}
     folder = Path(card["scene_file"]).parent if card.get("scene_file") else None

@@ -204,7 +204,7 @@ class Run(record.Run):
             raise InputError(Fault("against", str(against), problem, repair=repair))
         runs = [self] if against is None else [self, against]
         for run in runs:
-            run._require_own()
+            run.require_own()
         looked = [(run, run.program.look(run)) for run in runs]
         return figure_of(looked, wanted) if path is None else write_figure(looked, wanted, Path(path))
 
@@ -221,7 +221,7 @@ class Run(record.Run):
         """
         from porescale.common.api.measure import measure, write_tables
 
-        self._require_own()
+        self.require_own()
         tables = measure(self, self.program, given, sections)
         if out is not None:
             write_tables(tables, Path(out))
@@ -229,7 +229,7 @@ class Run(record.Run):
 
     def show(self) -> list[Path]:
         """Write pictures, film and profiles into the run folder, as the command `show` does; returns their paths."""
-        self._require_own()
+        self.require_own()
         return [Path(path) for path in self.program.show(self.folder)]
 
     @property
@@ -237,8 +237,13 @@ class Run(record.Run):
         """Whether the run is one of the package that opened it, which paints and measures its own runs alone."""
         return self.card.get("package") in (None, self.program.name)
 
-    def _require_own(self) -> None:
-        """InputError where another package must open the run."""
+    def require_own(self) -> None:
+        """InputError where another package must open the run, or where it is one of another command's: of no scene."""
+        whose = str(self.card.get("package"))
+        if whose.startswith(f"{self.program.name} "):
+            problem = f"holds a run of {whose}, and so of no scene"
+            repair = f"paint it with {self.program.name} show; to measure, run its scene ({whose} convert makes one)"
+            raise InputError(Fault("run folder", str(self.folder), problem, repair=repair))
         read_card(self.folder, self.program.name)
 
     @cached_property
@@ -246,7 +251,7 @@ class Run(record.Run):
         """What paints snapshots in colours that suit all of them."""
         from porescale.common.pictures.picture import painter_of
 
-        self._require_own()
+        self.require_own()
         return painter_of(self, self.program.look(self))
 
     def _painter_of(self, words: LookWords, others: Sequence[str] = ()) -> Painter:
@@ -260,7 +265,7 @@ class Run(record.Run):
             raise InputError(Fault("size", wanted.size, "is no number of pixels", repair=repair))
         if wanted.plain or not len(self):
             return self._painter
-        self._require_own()
+        self.require_own()
         return painter_of(self, wanted.look(self.program.look(self), self))
 
     def _painted(self, snapshot: Snapshot, painter: Painter | None = None) -> Picture:
@@ -291,7 +296,7 @@ class Run(record.Run):
 
         Needs anywidget (extra "widget"); with it Jupyter, VS Code and marimo show a run so by themselves.
         """
-        self._require_own()
+        self.require_own()
         if self.program.widget is None:
             raise InputError(Fault("widget", None, f"{self.program.name} has none", repair="take run.picture()"))
         return self.program.widget(self)

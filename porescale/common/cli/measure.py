@@ -26,12 +26,11 @@ def command(package: Package) -> Callable[..., int]:
         """
         from porescale.common.api.measure import register, write_tables
         from porescale.common.api.open_run import open_run
-        from porescale.common.record.read_card import read_card
 
-        read_card(run, package.name)
+        opened = open_run(run, package)
+        opened.require_own()
         folder = run if out is None else out
         require_writable(folder, "--out")
-        opened = open_run(run, package)
         tables = opened.measure(sections)
         paths = write_tables(tables, folder)
         if out is None:

@@ -68,9 +68,8 @@ def write_report(folder: Path, program: Program) -> Path:
 def require_alike(runs: Sequence[Run]) -> None:
     """InputError unless the runs can be shown in one box."""
     for run in runs:
-        if not len(run) and not run.tables:
-            repair = "let it run until its first snapshot"
-            raise InputError(Fault("run folder", str(run.folder), "has neither snapshots nor tables", repair=repair))
+        if not run.tables:
+            run.require_snapshots()
     first = runs[0]
     for run in runs[1:]:
         if run.card.get("package") != first.card.get("package"):

@@ -171,9 +171,7 @@ class Wanted:
     def chosen(self, run: Run, *, film: bool) -> list[int]:
         """Numbers of the snapshots that are shown: at the times, every so many, or the last; of a film all."""
         times, count = run.times, len(run)
-        if not count:
-            repair = "let it run until its first snapshot"
-            raise InputError(Fault("run folder", str(run.folder), "no snapshots to paint", repair=repair))
+        run.require_snapshots()
         picked = list(range(count)) if film or (self.every and not self.times) else [count - 1]
         if self.times is not None:
             asked = [_number("times", it, Quantity("s", help="times")) for it in self.times]

@@ -14,7 +14,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from porescale.common.core.atomic import write_bytes
-from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.canvas import Canvas
 from porescale.common.pictures.layout import DPI, Style, screen, stage
@@ -108,9 +107,7 @@ def paint(snapshot: Snapshot, look: Look | None = None, **changes: Any) -> AnyAr
 
 def painter_of(run: Run, look: Look) -> Painter:
     """A painter whose colours and view suit a whole run.  InputError when the run has no snapshots."""
-    if not len(run):
-        repair = "let it run until its first snapshot"
-        raise InputError(Fault("run folder", str(run.folder), "no snapshots to paint", repair=repair))
+    run.require_snapshots()
     title = look.title or run.name
     return Painter(survey(run.snapshots(look.cells, surveyed(run)), replace(look, title=title)))
 

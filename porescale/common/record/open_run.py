@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from porescale.common.core.atomic import owned
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import AnyArray
 from porescale.common.record import snapshots
 from porescale.common.record.columns import Columns
@@ -61,6 +62,16 @@ class Run:
 
     def __len__(self) -> int:
         return len(self._frames)
+
+    def require_snapshots(self) -> None:
+        """InputError where the run has none: there is none yet, or their files are no longer there."""
+        if len(self):
+            return
+        problem, repair = "has no snapshots", "let it run until its first snapshot"
+        if self.card.get("time"):  # it ended beyond its first
+            problem = "has no snapshots: their files (*.vtkhdf) are missing"
+            repair = "put them back, or run its scene again with --overwrite"
+        raise InputError(Fault("run folder", str(self.folder), problem, repair=repair))
 
     def snapshot(self, k: int, cells: Collection[str] | None = None) -> Snapshot:
         """Snapshot ``k`` (negative from the end); of its grids only the arrays in ``cells``, if given.

@@ -110,7 +110,8 @@ def picture(ends: Sequence[Ended], rows: Rows, tables: Tables) -> bytes:
     for axes, (file, column) in zip(panels, columns, strict=False):
         for at, ended in enumerate(ends):
             _curve(axes, ended, file, column, tables, f"C{at % 10}")
-        axes.set_title(column, fontsize=9)
+        axes.set_title(column, fontsize=9, pad=14)  # over what the numbers beside the axis have in common
+        axes.yaxis.get_offset_text().set_fontsize(7)
         axes.set_xlabel(TIME, fontsize=8)
     if len(columns) < len(named):
         words = f"the {len(columns)} of {len(named)} columns that differ most; {NAME}.csv has how all of them end"

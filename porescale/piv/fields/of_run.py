@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.record import snapshots
 from porescale.common.record.model import Grid
@@ -34,8 +33,7 @@ def field_of_run(folder: Path, time: float | None = None) -> Field:
         snapshot = snapshots.load(found[step], step)
     else:
         run = open_run(folder)
-        if not len(run):
-            raise InputError(Fault("run folder", str(folder), "holds no snapshot yet"))
+        run.require_snapshots()
         snapshot = run.snapshot(-1) if time is None else run.nearest(time)
     return _field(velocity_grid(snapshot, str(folder)))
 
@@ -45,6 +43,7 @@ def surface_of_run(folder: Path, x: Floats, time: float | None = None) -> Surfac
     if (folder / f"{MEASURED}.vtkhdf").exists():
         return None
     run = open_run(folder)
+    run.require_snapshots()
     snapshot = run.snapshot(-1) if time is None else run.nearest(time)
     grains = grains_of(snapshot)
     return of_grains(grains, x) if len(grains.x) else None

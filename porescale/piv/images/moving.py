@@ -160,8 +160,7 @@ def nearest(x: Floats, y: Floats, grains: Discs) -> tuple[Floats, NDArray[np.int
 
 def grid_of(run: Run) -> Grid:
     """The grid of a run's first snapshot that carries a velocity.  InputError if there is none."""
-    if not len(run):
-        raise InputError(Fault("run folder", str(run.folder), "holds no snapshot yet"))
+    run.require_snapshots()
     return velocity_grid(run.snapshot(0, ("velocity",)), str(run.folder))
 
 

@@ -237,6 +237,26 @@ def test_a_picture_shows_the_columns_that_differ_and_says_how_many_it_leaves_out
     assert len(titles) == 1
 
 
+def test_titles_of_a_picture_lie_clear_of_what_its_numbers_have_in_common(tmp_path, monkeypatch):
+    """A column that differs in its ninth digit has a number of 17 characters over its axis, beside its title."""
+    ends = [Ended(Point(name, ()), tmp_path / name, "finished", {}) for name in "ab"]
+    column, figures = "mass of all that is there (kg/m)", []
+    monkeypatch.setattr(sweep_files.files, "png", lambda figure, _: figures.append(figure) or b"")
+
+    def tables(folder, file):
+        return {column: np.full(2, 90.2231535 + 1e-6 * (folder.name == "b")), "time (s)": np.array([0.0, 1.0])}
+
+    sweep_files.picture(ends, [{"name": "mass", "column": column, "at": "end"}], tables)
+    figures[0].draw_without_rendering()
+    (axes,) = figures[0].axes
+    common, title = axes.yaxis.get_offset_text(), axes.title
+    assert len(common.get_text()) > 10
+    assert not title.get_window_extent().overlaps(common.get_window_extent())
+    axes.set_title(column, fontsize=9, pad=0)  # the twin: right over the axis
+    figures[0].draw_without_rendering()
+    assert title.get_window_extent().overlaps(common.get_window_extent())
+
+
 def test_a_number_that_cannot_be_had_is_none(tmp_path):
     write_series(tmp_path, {"decay": {"rate": 1.0, "start": 1.0}})
     ended = Ended(Point("a", ()), tmp_path, "finished", {})

@@ -168,3 +168,16 @@ def test_the_energy_balance_of_water_among_grains_is_said_to_be_open():
     assert not any(told in it for it in report(scene()).warnings)
     alone = scene_as_dict(scene(output=output)) | {"soil": None}
     assert not any(told in it for it in report(validate(Scene, alone)).warnings)
+
+
+@pytest.mark.parametrize("pores", [{}, {"saturated": False, "suction": {"alpha": 5.0, "n": 3.0, "water_table": 0.2}}])
+def test_the_density_of_grains_in_place_of_that_of_soil_is_warned_of(pores):
+    def said(density):
+        soil = {"density": density, "porosity": 0.4} | pores
+        given = scene(soil=soil, depth=0.0 if pores else 0.6)
+        return [it for it in report(given).warnings if "soil.density" in it]
+
+    (line,) = said(2650.0)
+    assert line.startswith("soil.density = 2650 kg/m³ is of grains per whole volume")
+    assert "makes grains of 4417 kg/m³" in line
+    assert not said(0.6 * 2650.0)

@@ -114,6 +114,17 @@ def test_ground_with_full_pores_alone_needs_a_speed_of_sound_without_gravity():
         scene({"saturated": True}, water={}, reservoir=[], gravity=0.0, **CLOSED)
 
 
+def test_a_water_table_over_all_ground_and_water_is_said_to_fill_no_more_than_pores():
+    def said(table):
+        return [
+            it for it in report(scene({"water_table": table, "held": True}, **CLOSED)).warnings if "water_table" in it
+        ]
+
+    (line,) = said(0.45)  # the ground is 0.4 m high
+    assert line.startswith("soil.water_table lies over all ground and water, 0.05 m over the highest ground")
+    assert not said(0.4)
+
+
 def test_water_is_at_rest_where_pool_and_water_table_are_level():
     # A table that is level with the pool drives nothing through the pores; one that is a pool higher does.
     def fastest(table):

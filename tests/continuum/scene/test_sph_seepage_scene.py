@@ -88,6 +88,20 @@ def test_soil_under_water_bears_its_weight_less_buoyancy_and_stays_at_rest():
     assert (cloud.data["layer"] == WET).sum() == n
 
 
+def test_soil_under_water_is_shown_with_the_pressure_of_its_water():
+    """Its own mean stress stood there, beside water, in the same colours under the same name."""
+    clouds = Simulation(scene()).snapshot().clouds
+    whole, soil = clouds["particles"], clouds["soil"]
+    shown, y = whole.data["pressure"][whole.data["layer"] == WET], soil.position[:, 1]
+    inner = y > 2.75 * 0.02  # kernels reach no floor
+    exact = 1000.0 * GRAVITY * (0.4 - y[inner])
+    # The mean of a linear pressure over a kernel is that of its centre; what is left is water that is compressed by
+    # g H/c^2 = 0.0006, and so denser and heavier below.
+    np.testing.assert_allclose(shown[inner], exact, rtol=0.0006)
+    stress = soil.data["mean_stress"][inner]  # the twin: half of it and less
+    assert (stress < 0.7 * exact).all()
+
+
 @pytest.mark.slow
 def test_a_resumed_run_goes_on_bit_for_bit():
     whole, part, resumed = (Simulation(scene()) for _ in range(3))

@@ -80,6 +80,11 @@ WRONG: dict[tuple[str, ...], str] = {
     ("porescale", "show", "half"): "card.json is damaged or not that of a run",
     ("continuum", "show", "half"): "card.json is damaged or not that of a run",
     ("porescale", "show", "other"): "holds a run of continuum-sph, not of porescale",
+    ("porescale", "measure", "deck", "probe.toml"): "to measure, run its scene (porescale demseg convert makes one)",
+    ("porescale", "measure", "begun", "probe.toml"): "has no snapshots; let it run until its first snapshot",
+    ("porescale", "measure", "gone", "probe.toml"): "(*.vtkhdf) are missing; put them back, or run its scene again",
+    ("porescale", "show", "gone"): "(*.vtkhdf) are missing; put them back, or run its scene again with --overwrite",
+    ("porescale", "show", "gone", "--every", "2"): "(*.vtkhdf) are missing; put them back, or run its scene again",
     ("porescale", "demseg", "run", "good.toml"): "in_gm.dat: cannot be read (Not a directory)",
     ("porescale", "piv", "measure", "good.toml"): "cannot be read",
 }
@@ -94,7 +99,13 @@ def place(tmp_path, monkeypatch) -> Path:
     (tmp_path / "link.toml").symlink_to("link.toml")
     (tmp_path / "words.toml").write_text("domain:\n  width: 1\n")
     (tmp_path / "latin.csv").write_bytes("name,title\na,Körner\n".encode("latin-1"))
-    for name, card in (("half", {}), ("other", {"package": "continuum-sph", "scene": {}})):
+    (tmp_path / "probe.toml").write_text("[[probe]]\nx = 0.01\ny = 0.01\n")
+    scene = {"package": "porescale", "scene": {"domain": {"width": 0.1, "height": 0.1}, "time": {}, "output": {}}}
+    cards = {
+        "half": {}, "other": {"package": "continuum-sph", "scene": {}}, "begun": scene, "gone": {**scene, "time": 0.01},
+        "deck": {"package": "porescale demseg", "scene": {}},
+    }  # fmt: skip
+    for name, card in cards.items():
         (tmp_path / name).mkdir()
         (tmp_path / name / "card.json").write_text(json.dumps(card))
     monkeypatch.chdir(tmp_path)
