@@ -141,6 +141,7 @@ def test_a_settled_packing_of_a_material_rests_on_walls_of_another():
     scene = dry(
         grains__packing__settle=True, gate={"x": 0.008, "opens_at": 1}, material=[SAND, STEEL],
         grains__packing__material="steel", contact__wall_material="sand",
+        **{f"contact__{key}": value for key, value in ROLLS.items()},
     )  # fmt: skip
     grains = build(scene).grains
     assert set(grains.material.tolist()) == {1}
