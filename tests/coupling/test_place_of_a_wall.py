@@ -42,7 +42,7 @@ def measured(operator: str, weighting: str | None, fraction: float, tau: float) 
     return 1 - (SOLID + 2.5 - u[0] / slope - SOLID)
 
 
-CASES = [("odd-SC1", "B2", 0.8), ("SC1", "B1", 1.5), ("SC3", "B2", 1.5)]
+CASES = [("odd-SC1", "B2", 0.8), ("SC1", "B2", 1.5), ("SC3", "B1", 1.5)]
 
 
 @pytest.mark.parametrize(("operator", "weighting", "tau"), CASES)

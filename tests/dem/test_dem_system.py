@@ -9,6 +9,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces import pairs as forces
 from porescale.dem.forces import walls
 from porescale.dem.forces.batch import pair_forces, scratch
+from porescale.dem.forces.rectangle import add_rectangle_forces
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
@@ -97,7 +98,7 @@ def test_kernels_do_the_same_as_plain_python():
         call(pair_forces)(d, pairs, law, 1e-5, Still(0.0, 0.0), *(it[0] for it in scratch(1)))
         near = np.ones((len(grains.walls), walls.runs_of(len(d.radius))), np.uint8)
         call(walls.add_near_walls)(d, *grains.surface("wall"), 0, near, 0, len(d.radius), law, 1e-5)
-        call(walls.add_plate_forces)(d, *grains.surface("plate"), 0, 0, len(d.radius), law, 1e-5)
+        call(add_rectangle_forces)(d, *grains.surface("plate"), 0, 0, len(d.radius), law, 1e-5)
         call(kick.kick_drift)(d, pairs.checked_position, 1.0, 3.0, 1e-5)
         grains.kept = call(measure.survey_pairs)(d.position, d.radius, pairs, grains.cell, grains.touching)
     assert (a.touching > 1).all()

@@ -1,4 +1,4 @@
-"""Rectangles with a prescribed velocity: gates of finite thickness, pistons, steps.
+"""Rectangles with a prescribed velocity: gates of finite thickness, pistons, steps.  A plate is one without thickness.
 
 A disc touches a rectangle at its closest point, on a face or a corner, by the contact law of walls; a centre that got
 inside (which a stiff law never lets happen) is pushed out through the nearest face.  Every disc keeps its springs per
@@ -15,7 +15,7 @@ from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.budget import SURFACES, add_work, has_budget
 from porescale.dem.contact.law import has_history, store_history
-from porescale.dem.forces.walls import add_leaving_losses, surface_contact
+from porescale.dem.forces.walls import HIGH, LOW, PRESENT, VELOCITY, X, add_leaving_losses, surface_contact
 
 LEFT, BOTTOM, RIGHT, TOP, VELOCITY_X, VELOCITY_Y = range(6)
 """Columns of the rectangle table: faces (m) and velocity (m/s)."""
@@ -60,23 +60,30 @@ def nearest_face(x, y, left, bottom, right, top):
     return nx, ny, depth
 
 
-@kernel
-def add_rectangle_forces(d, rectangles, laws, spring, load, row, first, last, law, dt):
-    """Add the contacts of discs first to last with all rectangles; reset the springs of those that do not touch.
+@inline
+def edges(table, w):
+    """Row ``w`` of a table of rectangles or of plates: left, bottom, right and top (m), velocity (m/s), whether it is
+    there."""
+    if table.shape[1] > PRESENT + 1:
+        at, to = (table[w, LEFT], table[w, BOTTOM]), (table[w, RIGHT], table[w, TOP])
+        return at[0], at[1], to[0], to[1], table[w, VELOCITY_X], table[w, VELOCITY_Y], True
+    x = table[w, X]
+    return x, table[w, LOW], x, table[w, HIGH], 0.0, table[w, VELOCITY], table[w, PRESENT] != 0.0
 
-    rectangles (k, 6);  overwrites rows of load (k or more, 2 or 3) N/m from ``row`` on.  The rest as in walls.py.
+
+@kernel
+def add_rectangle_forces(d, table, laws, spring, load, row, first, last, law, dt):
+    """Add the contacts of discs first to last with all rectangles, or with all plates that are present; reset the
+    springs of those that do not touch.
+
+    table (k, 6) of rectangles or (k, 5) of plates: one kernel is compiled once for both;  overwrites rows of load (k or
+    more, 2 or 3) N/m from ``row`` on.  The rest as in walls.py.
     """
-    for w in range(rectangles.shape[0]):
-        left, bottom, right, top = (
-            rectangles[w, LEFT],
-            rectangles[w, BOTTOM],
-            rectangles[w, RIGHT],
-            rectangles[w, TOP],
-        )
-        across, up = rectangles[w, VELOCITY_X], rectangles[w, VELOCITY_Y]
+    for w in range(table.shape[0]):
+        left, bottom, right, top, across, up, present = edges(table, w)
         memory, own = spring[w], laws[w]
         sum_x, sum_y = 0.0, 0.0
-        for i in range(first, last):
+        for i in range(first, last if present else first):
             x, y = d.position[i, 0], d.position[i, 1]
             dx = min(max(x, left), right) - x
             dy = min(max(y, bottom), top) - y

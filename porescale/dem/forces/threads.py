@@ -32,7 +32,7 @@ from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.forces.batch import block_far_forces, block_forces, pair_forces, scratch
 from porescale.dem.forces.pairs import start_forces
 from porescale.dem.forces.rectangle import add_rectangle_forces
-from porescale.dem.forces.walls import RUN, add_near_walls, add_plate_forces
+from porescale.dem.forces.walls import RUN, add_near_walls
 
 Index = NDArray[np.int64]
 
@@ -165,7 +165,7 @@ def surfaces_of_block(b, d, s, law, dt, sweep):
     load, walls, plates = sweep.partial[b], s.walls.shape[0], s.plates.shape[0]
     add_near_walls(d, s.walls, s.wall_laws, s.wall_spring, load, np.int64(0), sweep.near, first, last, law, dt)
     if plates > 0:
-        add_plate_forces(d, s.plates, s.plate_laws, s.plate_spring, load, walls, first, last, law, dt)
+        add_rectangle_forces(d, s.plates, s.plate_laws, s.plate_spring, load, walls, first, last, law, dt)
     if s.rectangles.shape[0] > 0:
         add_rectangle_forces(
             d, s.rectangles, s.rectangle_laws, s.rectangle_spring, load, walls + plates, first, last, law, dt

@@ -1,8 +1,9 @@
 """Walls: the straight sides of the domain, and plates, which are upright line segments that can move.
 
 A wall is a point and a normal that points into the domain; behind it is solid without end.  A plate has no
-thickness and takes contacts on both sides and at its ends, by its closest point.  Both use the contact law
-of pairs: the limit r_j -> infinity of the pair's lever arm is the distance to the wall, that of the reduced radius r_i.
+thickness and takes contacts on both sides and at its ends, by its closest point: rectangle.py.  Both use the contact
+law of pairs: the limit r_j -> infinity of the pair's lever arm is the distance to the wall, that of the reduced
+radius r_i.
 Every disc keeps its springs per wall and per plate, zero while they do not touch.
 """
 
@@ -240,42 +241,6 @@ def mark_near(position, radius, walls, way, near):
                     found = True
                     break
             near[w, run] = found
-
-
-@kernel
-def add_plate_forces(d, plates, laws, spring, load, row, first, last, law, dt):
-    """Add the contacts of discs first to last with all plates that are present; reset the springs of those that do not
-    touch.
-
-    plates (p, 5);  overwrites rows of load (p or more, 2 or 3) N/m from ``row`` on.  The rest as in add_wall_forces.
-    """
-    for w in range(plates.shape[0]):
-        sum_x, sum_y = 0.0, 0.0
-        if plates[w, PRESENT] != 0.0:
-            x, low, high, rise = plates[w, X], plates[w, LOW], plates[w, HIGH], plates[w, VELOCITY]
-            memory, own = spring[w], laws[w]
-            for i in range(first, last):
-                dx = x - d.position[i, 0]
-                dy = min(max(d.position[i, 1], low), high) - d.position[i, 1]
-                square = dx * dx + dy * dy
-                if square < d.radius[i] * d.radius[i]:
-                    distance = np.sqrt(square)
-                    fx, fy, moment, _ = surface_contact(
-                        i, dx / distance, dy / distance, distance, 0.0, rise, 0.0, d, memory, dt, own, law
-                    )
-                    d.force[i, 0] += fx
-                    d.force[i, 1] += fy
-                    d.torque[i] += moment
-                    sum_x -= fx
-                    sum_y -= fy
-                    add_work(d.budget, i, SURFACES, fy * rise, dt)
-                else:
-                    if has_budget(d.budget) and has_history(memory, i, law):
-                        vx, vy = d.velocity[i, 0], d.velocity[i, 1] - rise
-                        add_leaving_losses(i, dx, dy, vx, vy, 0.0, d, memory, dt, own, law)
-                    store_history(memory, i, 0.0, 0.0, law)
-        load[row + w, 0] = sum_x
-        load[row + w, 1] = sum_y
 
 
 @inline

@@ -18,7 +18,7 @@ from porescale.dem.bodies.rigid import arms, clumps_of
 from porescale.dem.contact.law import MU, springs_of
 from porescale.dem.forces.batch import pair_forces, scratch
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
-from porescale.dem.forces.walls import HIGH, LOW, NX, PRESENT, PX, X, add_plate_forces, add_wall_forces
+from porescale.dem.forces.walls import HIGH, LOW, NX, PRESENT, PX, X, add_wall_forces
 from porescale.dem.listing import current_pairs
 from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
 from porescale.dem.measures.contacts_segments import bond_contacts, segment_contacts
@@ -134,7 +134,7 @@ def _plate(grains: State) -> list[Touched]:
         nearest = np.column_stack((np.full_like(x, row[X]), np.clip(y, row[LOW], row[HIGH])))
         distance = np.hypot(nearest[:, 0] - x, nearest[:, 1] - y)
         distance = distance if row[PRESENT] else np.full_like(distance, np.inf)
-        forces = _single(grains, add_plate_forces, grains.surface("plate"), w)
+        forces = _single(grains, add_rectangle_forces, grains.surface("plate"), w)
         made.append((nearest, distance, forces, grains.plate_laws[w, :, MU]))
     return made
 

@@ -42,7 +42,11 @@ def static_stack() -> Measured:
 
 def unlike_stack(gravity: float = GRAVITY) -> Floats:
     """Overlaps over m g: floor of steel under a disc of rubber, under one of steel, (2,) m/N per metre, at rest."""
-    steel, rubber = Linear(STIFFNESS), Linear(0.1 * STIFFNESS)
+    soft = 1e-3 * STIFFNESS  # of friction and rolling, which have nothing to do in a stack
+    steel, rubber = (
+        Linear(part * STIFFNESS, 0.0, soft, friction=0.5, rolling_friction=0.1, rolling_stiffness=soft)
+        for part in (1.0, 0.1)
+    )
     laws = Materials({"steel": steel, "rubber": rubber}, walls="steel")
     discs = make_discs([(0.0, RADIUS), (0.0, 3.0 * RADIUS)], RADIUS, DENSITY)
     box = Box((-1.0, 0.0), (1.0, 1.0), "open", "open", top="open")

@@ -23,6 +23,10 @@ from porescale.common.schema.sections import validate
 eps = np.finfo(float).eps
 
 
+CORRECTED = {"corrected": True, "noise": LINEAR}
+"""Corrected gradients, and what takes one of density: one choice, so that one pass is compiled for all that have it."""
+
+
 def column(walls="slip", particles="pressure", end=1.0, **numerics):
     """A column of 5 by 10 particles that fills its tank's width, at rest."""
     scene = trials.column_scene(0.1, tank=(0.5, 1.2), column=(0.5, 1.0), **numerics)
@@ -70,7 +74,7 @@ def test_viscosity_between_two_fluids_is_the_harmonic_mean():
 
 
 def test_corrected_gradients_of_linear_fields_are_exact_in_disorder():
-    flow = stirred(corrected=True, noise=LINEAR)
+    flow = stirred(**CORRECTED)
     layer = flow.layer
     # density linear in the box, but where its sides meet
     x = layer.x
@@ -91,7 +95,7 @@ def test_correction_fades_where_neighbours_lie_on_one_side():
     assert np.array([[xx, xy], [xy, yy]]) @ [[0.95, 0.05], [0.05, 0.9]] == pytest.approx(np.eye(2), abs=4 * eps)
 
 
-@pytest.mark.parametrize("choices", [{}, {"corrected": True}])
+@pytest.mark.parametrize("choices", [{}, CORRECTED])
 def test_momentum_is_kept_with_and_without_corrected_gradients(choices):
     flow = stirred(**choices)
     before, scale = trials.momentum(flow), float((flow.layer.mass[:, None] * np.abs(flow.layer.v)).sum())
@@ -101,7 +105,7 @@ def test_momentum_is_kept_with_and_without_corrected_gradients(choices):
     assert np.abs(trials.momentum(flow) - before).max() < 6.0 * (20 * 30 * 144) ** 0.5 * eps / 144 * scale
 
 
-@pytest.mark.parametrize("choices", [{}, {"corrected": True}, {"noise": 2}, {"noise": 0}])
+@pytest.mark.parametrize("choices", [{}, CORRECTED, {"noise": 2}, {"noise": 0}])
 def test_the_budget_of_energies_closes(choices):
     flow = stirred(**choices)
     before = budget(flow)
