@@ -18,7 +18,7 @@ from continuum_sph.soil import plasticity as soil_plasticity
 from continuum_sph.soil import stress as soil_stress
 from continuum_sph.soil.gradient import inverse, velocity_gradients
 from continuum_sph.soil.momentum import Choices, accelerate
-from continuum_sph.soil.plasticity import returned
+from continuum_sph.soil.plasticity import returned, strength
 from continuum_sph.soil.state import MASS, VOLUME, X
 from continuum_sph.soil.stress import XX, YY, Straining, deform
 from continuum_sph.soil.tension import repel_under_tension
@@ -136,7 +136,7 @@ def test_stress_brought_back_lies_on_yield_or_where_it_was(p, r, soil, excess):
     material = Material(1e6, 1600.0, **soil)
     row = material.row()
     area, shear = material.area_modulus * 1e6, material.shear_modulus * 1e6
-    q, s, flow, opened = returned.py_func(p, r, excess, area, shear, 1e-4, row)
+    q, s, flow, opened = returned.py_func(p, r, excess, (area, shear), 1e-4, strength(0.0, row), row)
     slack = 1e-9 * (abs(p) + r)
     more = material.sin_friction * max(excess, -max(p, 0.0))  # the mean of the surroundings pulls where p does, too
     assert 0.0 <= s <= material.sin_friction * q + material.cohesion_intercept + more + slack
