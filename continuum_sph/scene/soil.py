@@ -156,7 +156,7 @@ class SoilSection(Section):
         default="constant", description="how permeability follows the porosity"
     )
     hydraulic_share: float = quantity(
-        "", 1.0, ge=0.01, le=1, help='of their volume that grains take up in the flow, in "kozeny-carman": λ² of discs'
+        "", 1.0, ge=0.01, le=1, help='share of their volume that grains take up in the flow, of "kozeny-carman"'
     )
     saturated: bool = pydantic.Field(False, description="pores are full at the start, up to the surface of the ground")
     water_table: float | None = quantity("m", None, ge=0, le=1e5, help="height up to which pores are full at the start")
@@ -226,7 +226,7 @@ class SoilSection(Section):
             repair = 'give soil.saturated = true and soil.held = false, or stress "geostatic"'
             found.append(Fault("soil.stress", self.stress, "is of ground with full pores that may move", repair=repair))
         if self.hydraulic_share != 1.0 and self.permeability_law != CONDUCTING:
-            repair = f'soil.permeability_law = "{CONDUCTING}"'
+            repair = f'give soil.permeability_law = "{CONDUCTING}"'
             problem = "is of a law that the scene does not have"
             found.append(Fault("soil.hydraulic_share", self.hydraulic_share, problem, repair=repair))
         for part in (self.rate, self.softening):
