@@ -79,18 +79,23 @@ def numbers(tests: Sequence[Mapping[str, Floats]]) -> list[dict[str, float]]:
 
 def peaks(every: Sequence[Mapping[str, Floats]]) -> tuple[Floats, Floats]:
     """Sine of the friction angle and dilatancy dv/da of each test, (n,), where their means over tests are largest."""
-    end = min(float(it["strain"][-1]) for it in every)
-    at = np.arange(WINDOW, end - 0.5 * WINDOW, 0.1 * WINDOW)  # before WINDOW contacts close, or a test begins
     found = []
     for name, which in (("sine", 0), ("volume", 1)):
-        rows = []
-        for it in every:
-            values = running(it["strain"], it[name])[which]
-            sound = np.isfinite(values)
-            rows.append(np.interp(at, it["strain"][sound], values[sound]))
-        table = np.array(rows)
+        table = tabled(every, name, which)[1]
         found.append(table[:, int(table.mean(axis=0).argmax())])
     return found[0], found[1]
+
+
+def tabled(every: Sequence[Mapping[str, Floats]], name: str, which: int) -> tuple[Floats, Floats]:
+    """Axial strains (m,) that all tests reach, and there of each the ``which`` of `running` of a column, (n, m)."""
+    end = min(float(it["strain"][-1]) for it in every)
+    at = np.arange(WINDOW, end - 0.5 * WINDOW, 0.1 * WINDOW)  # before WINDOW contacts close, or a test begins
+    rows = []
+    for it in every:
+        values = running(it["strain"], it[name])[which]
+        sound = np.isfinite(values)
+        rows.append(np.interp(at, it["strain"][sound], values[sound]))
+    return at, np.array(rows)
 
 
 def _alone(it: Mapping[str, Floats]) -> dict[str, float]:

@@ -54,6 +54,11 @@ class Known(Sample):
         """Half of the interval of the mean at 95 %; nan where packings are too few for one."""
         return math.hypot(self.half, self.systematic)
 
+    @property
+    def resolved(self) -> bool:
+        """Whether it is above zero, by more than its interval where it has one."""
+        return self.mean > 0.0 and not self.interval >= self.mean
+
     def table(self) -> dict[str, Any]:
         """The number as a table of the material file."""
         made = {"mean": self.mean, "standard_error": self.error, "deviation": self.deviation,

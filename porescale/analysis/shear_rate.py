@@ -184,9 +184,8 @@ def handed_over(found: Mapping[str, Known]) -> bool:
     between that of the slow tests and STEEPEST."""
     if HALFWAY not in found:
         return False
-    return found["critical friction angle"].mean < found[FASTEST_ANGLE].mean <= STEEPEST and all(
-        found[name].mean > 0.0 and not found[name].interval >= found[name].mean for name in (GROWTH, HALFWAY)
-    )
+    slow, fastest = found["critical friction angle"].mean, found[FASTEST_ANGLE].mean
+    return slow < fastest <= STEEPEST and all(found[name].resolved for name in (GROWTH, HALFWAY))
 
 
 def rate_table(found: Mapping[str, Known], diameter: float) -> dict[str, float]:

@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.analysis.biaxial import LATE, WINDOW, curves, running
+from porescale.analysis.biaxial import LATE, curves, tabled
 from porescale.analysis.material import Known
 from porescale.common.core.statistics import jackknife
 from porescale.common.core.types import Floats
@@ -30,16 +30,9 @@ def known_softening(tests: Sequence[Mapping[str, Floats]]) -> dict[str, Known]:
     """The LAW through the mean of all ``tests``, columns of their series.csv, with intervals of the jackknife; empty
     where a mean of all or of all but one has no peak above its critical state."""
     every = [curves(series) for series in tests]
-    end = min(float(it["strain"][-1]) for it in every)
-    at = np.arange(WINDOW, end - 0.5 * WINDOW, 0.1 * WINDOW)
-    sines, shears = [], []
-    for it in every:
-        values = running(it["strain"], it["sine"])[0]
-        sound = np.isfinite(values)
-        sines.append(np.interp(at, it["strain"][sound], values[sound]))
-        shears.append(np.interp(at, it["strain"], it["strain"] + it["across"]))
-    sine, shear = np.array(sines), np.array(shears)
-    late = at > LATE * end
+    at, sine = tabled(every, "sine", 0)
+    shear = np.array([np.interp(at, it["strain"], it["strain"] + it["across"]) for it in every])
+    late = at > LATE * min(float(it["strain"][-1]) for it in every)
 
     def of(packings: list[int]) -> Floats:
         """The numbers of LAW of some packings."""
@@ -63,8 +56,9 @@ def fall(shear: Floats, sine: Floats, late: NDArray[np.bool_]) -> Floats:
 
 
 def handed_over(found: Mapping[str, Known]) -> bool:
-    """Whether a continuum can take the law over: peak and γs are above zero by more than their intervals."""
-    return all(name in found and found[name].mean > max(0.0, found[name].interval) for name in LAW)
+    """Whether a continuum can take the law over: peak and γs are above zero, by more than their bars where there are
+    any."""
+    return all(name in found and found[name].resolved for name in LAW)
 
 
 def softening_table(found: Mapping[str, Known]) -> dict[str, float]:

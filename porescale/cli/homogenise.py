@@ -170,10 +170,8 @@ def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
     from porescale.common.record.series import read_series
     from porescale.coupling.limits import FOR_NARROW_GAPS
 
-    kept, of = (
-        folder / PORES,
-        {"lambda": ratio, "cells": cells, "step": STEP, "operator": FOR_NARROW_GAPS, "after": True},
-    )
+    kept = folder / PORES
+    of = {"lambda": ratio, "cells": cells, "step": STEP, "operator": FOR_NARROW_GAPS, "after": True}
     try:
         known = json.loads(kept.read_text(encoding="utf-8"))
         if known["of"] == of:

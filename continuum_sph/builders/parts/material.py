@@ -9,8 +9,9 @@ from continuum_sph.scene.soil import SoilSection
 from continuum_sph.soil import Material, Rate, Softening
 
 BAND = 2.0
-"""Width of a shear band of particles, spacings: two rows share 0.8 to 1.0 of the slip between them, on a lattice or
-strewn by a fifth of a spacing, with 10, 20 and 40 rows (`continuum.soil_softens_by_slip`)."""
+"""Width of a shear band of particles, spacings.  A step of velocity between two rows of a lattice is a gradient of 0.47
+of it a spacing in both and 0.03 in the next ones (Wendland C2, h of 1.375 spacings), and bands of sheared layers begin
+with that, strewn ones, too; later the row that is ahead takes more of the slip (`continuum.soil_softens_by_slip`)."""
 
 
 def material_of(section: SoilSection) -> Material:
@@ -41,7 +42,7 @@ def rate_of(section: RateSection) -> Rate:
 
 
 def softening_of(section: SofteningSection) -> Softening:
-    """How the strength of a soil falls with plastic shear strain, anywhere but in a band of particles."""
+    """How the strength of the soil itself falls with plastic shear strain; `banded` has that of its particles."""
     left = section.friction_angle
     return Softening(math.sin(left), section.cohesion * math.cos(left), section.shear_strain)
 

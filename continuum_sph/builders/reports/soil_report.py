@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from continuum_sph.builders.parts.material import banded, material_of
+from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.watched import watched_rows
 from continuum_sph.builders.reports.time_report import SOIL, STAGE, report_run, step_seconds
@@ -60,7 +60,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
         out.row("angle at which an endless slope shears", math.degrees(limit), "degrees", "without cohesion")
     warn_of_rest(out, section, material, material.density * scene.gravity * section.height)
     warn_of_steep_faces(scene, out)
-    report_softening(out, section, banded(material, section, spacing), pressure)
+    report_softening(out, section, law.materials[0], pressure)
     report_rate(out, section, wet=section.suction is not None)
     out.heading("steps")
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
