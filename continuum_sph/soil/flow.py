@@ -14,9 +14,10 @@ import numpy as np
 
 from continuum_sph.soil.gradient import velocity_gradients
 from continuum_sph.soil.leapfrog import kick, kick_drift
-from continuum_sph.soil.material import DENSITY, TENSION, table
+from continuum_sph.soil.material import DENSITY, SOFTENED_STRAIN, TENSION, table
 from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.parameters import RULES, SoilLaw
+from continuum_sph.soil.softening import soften
 from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import Straining, deform
 from continuum_sph.soil.tension import repel_under_tension
@@ -39,7 +40,8 @@ class SoilFlow:
     step : steps done;  time, next_step : s;  limited : steps that each of `law.RULES` limited, rule : the one that
     limits the next;  limit : longest step that other layers allow, s;  stopped : times a particle was stopped at
     ``lower`` or ``upper`` (2,) m, infinite unless set;  sound_rate : largest c/h, 1/s;  max_speed : m/s;
-    strained : the last step, s, for which the diffusion that is under way was bounded;  before_force : called before
+    strained : the last step, s, for which the diffusion that is under way was bounded;  sheared (soil,) : plastic shear
+    strain of the last step where soil softens, else empty;  before_force : called before
     accelerations, to overwrite ``soil.force``.
     """
 
@@ -65,6 +67,8 @@ class SoilFlow:
         self.table = table(self.law.materials)
         self.refuse_other_sizes()
         self.pulling = self.law.repulsion > 0.0 and bool((self.table[:, TENSION] > 0.0).any())
+        softens = bool((self.table[:, SOFTENED_STRAIN] > 0.0).any())
+        self.sheared = np.zeros(soil.soil if softens else 0)
         self.split = np.zeros(soil.count, np.int64)
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
         # Walls do not interact.
@@ -120,11 +124,13 @@ class SoilFlow:
         spin = -1.0 if law.printed_spin else 1.0
         max_sound2 = deform(
             soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.separation_strain,
-            soil.plastic_shear, soil.record,
+            soil.plastic_shear, self.sheared, soil.record,
             Straining(
                 step, min(step, LASTING * self.strained), spin, law.most, law.damping / law.smoothing.length, law.even
             ),
         )  # fmt: skip
+        if self.sheared.size:
+            soften(soil.soil, soil.record, soil.material, self.sheared, soil.plastic_shear, self.near)
         self.strained = step
         self.sound_rate = float(max_sound2) ** 0.5 / law.smoothing.length
 

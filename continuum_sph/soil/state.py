@@ -21,7 +21,8 @@ class Soil:
     x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth, of soil that of its grains;
     density (soil,) kg/m³, grains per whole volume;  stress (n, 4) Pa, effective, of walls that of the soil before them;
     material (n,) number of the particle's material.  What has happened to a particle: separation_strain (soil,)
-    by how much of its volume it has come apart, plastic_shear (soil,) shear strain that did not come back.
+    by how much of its volume it has come apart, plastic_shear (soil,) shear strain that did not come back,
+    of soil that softens that of its surroundings, see `softening`.
     The rest is made of these.  Raises InputError for arrays of other shapes; they are kept, not copied.
     """
 

@@ -48,10 +48,13 @@ class Straining(NamedTuple):
 
 
 @parallel_kernel
-def deform(density, stress, material, table, matrix, spread, separation_strain, plastic_shear, record, straining):
+def deform(
+    density, stress, material, table, matrix, spread, separation_strain, plastic_shear, sheared, record, straining
+):  # fmt: skip
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``separation_strain``, ``plastic_shear``
     (soil,) and in ``record`` (n, 16) c/ρ, less where damping would take more than a step follows, shear strain rate
-    and σ·K.
+    and σ·K.  Where soil softens ``sheared`` (soil,) is overwritten by the plastic shear strain of the step, and
+    ``plastic_shear`` left to `softening.soften`; else it is empty.
 
     material, table, matrix: see `state.Soil`;  spread (soil, 7) Pa/s, m²/s, Pa and 1: diffusion of stress and
     volume, mean p of the surroundings less p, and crowd, of `accelerate`;  straining: see `Straining`.  Returns the
@@ -90,7 +93,10 @@ def deform(density, stress, material, table, matrix, spread, separation_strain, 
         stress[i, XY] = xy
         stress[i, ZZ] = zz
         separation_strain[i] = opened
-        plastic_shear[i] += flow
+        if sheared.shape[0] > 0:
+            sheared[i] = flow
+        else:
+            plastic_shear[i] += flow
         speed2 = (row[AREA] + row[SHEAR]) * stiffness_share(0.5 * (xx + yy), row) / density[i]
         max_sound2 = max(max_sound2, speed2)
         kxx = matrix[i, 0]

@@ -7,11 +7,8 @@ from continuum_sph.scene.rate import RateSection
 from continuum_sph.scene.softening import SofteningSection
 from continuum_sph.scene.soil import SoilSection
 from continuum_sph.soil import Material, Rate, Softening
-
-BAND = 2.0
-"""Width of a shear band of particles, spacings.  A step of velocity between two rows of a lattice is a gradient of 0.47
-of it a spacing in both and 0.03 in the next ones (Wendland C2, h of 1.375 spacings), and bands of sheared layers begin
-with that, strewn ones, too; later the row that is ahead takes more of the slip (`continuum.soil_softens_by_slip`)."""
+from continuum_sph.soil.softening import band_width
+from continuum_sph.water.smoothing import Smoothing
 
 
 def material_of(section: SoilSection) -> Material:
@@ -47,14 +44,14 @@ def softening_of(section: SofteningSection) -> Softening:
     return Softening(math.sin(left), section.cohesion * math.cos(left), section.shear_strain)
 
 
-def banded(material: Material, section: SoilSection, spacing: float) -> Material:
+def banded(material: Material, section: SoilSection, smoothing: Smoothing, spacing: float) -> Material:
     """A ``material`` whose bands of particles at ``spacing`` (m) soften by the slip that those of the soil do.
 
     Soil that softens shears in bands, which grains make some ten diameters wide (Roscoe, Géotechnique 20 (1970) 129;
-    Mühlhaus & Vardoulakis, Géotechnique 37 (1987) 271) and particles `BAND` spacings: γs goes with the ratio of both
-    (Pietruszczak & Mróz, Int. J. Numer. Meth. Eng. 17 (1981) 327).
+    Mühlhaus & Vardoulakis, Géotechnique 37 (1987) 271) and particles `softening.band_width`: γs goes with the ratio of
+    both (Pietruszczak & Mróz, Int. J. Numer. Meth. Eng. 17 (1981) 327).
     """
     if not (section.softening and material.softening):
         return material
-    strain = material.softening.shear_strain * section.softening.band_width / (BAND * spacing)
+    strain = material.softening.shear_strain * section.softening.band_width / band_width(smoothing, spacing)
     return replace(material, softening=replace(material.softening, shear_strain=strain))

@@ -301,7 +301,7 @@ def soil_law(scene: Scene) -> SoilLaw:
     return SoilLaw(
         smoothing,
         numerics.spacing,
-        (banded(material, section, numerics.spacing),),
+        (banded(material, section, smoothing, numerics.spacing),),
         (0.0, -scene.gravity),
         damping=damping_of(section, numerics, damping),
         printed_damping=choice.damping_of == "approach",

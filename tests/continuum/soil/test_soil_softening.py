@@ -5,13 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from continuum_sph.builders.parts.material import BAND, material_of
+from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.soil import soil_law
 from continuum_sph.builders.report import report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.soil import Material, Rate, Softening
 from continuum_sph.soil.material import RATE_STRENGTH, SOFTENED_STRAIN
 from continuum_sph.soil.plasticity import new_stress, strength
+from continuum_sph.soil.softening import band_width
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 
@@ -82,7 +83,8 @@ def test_a_scene_names_its_softening_and_particles_have_its_slip():
     given = scene(GIVEN)
     assert material_of(given.soil).softening == Softening(math.sin(math.radians(18.0)), 0.0, 0.1)
     (material,) = soil_law(given).materials
-    slip = material.softening.shear_strain * BAND * given.numerics.spacing
+    law = soil_law(given)
+    slip = material.softening.shear_strain * band_width(law.smoothing, given.numerics.spacing)
     assert slip == pytest.approx(0.1 * 0.02, rel=4 * EPS)
     assert soil_law(scene(None)).materials[0].softening is None
 

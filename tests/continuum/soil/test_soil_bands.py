@@ -1,0 +1,138 @@
+"""Bands of soil that softens: what two rows share, how wide a band is, what damping bears across it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from continuum_sph.soil import Material, Softening
+from continuum_sph.soil import flow as flow_module
+from continuum_sph.soil.softening import band_width, soften
+from continuum_sph.soil.state import VOLUME
+from continuum_sph.validation.soil.setups import DENSITY, RATIO, body
+from continuum_sph.validation.soil.softening import BRAKE, PACE
+from continuum_sph.water.smoothing import SUPPORT, Smoothing, kernel_slope
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.constants import GRAVITY
+from porescale.common.neighbors import square_lattice
+
+SPACING = 0.1
+H = RATIO * SPACING
+CLAY = Material(1e6, 1600.0, sin_friction=0.0, cohesion_intercept=1e3, softening=Softening(0.0, 200.0, 0.1))
+EPS = float(np.finfo(np.float64).eps)
+
+
+def clay(material=CLAY):
+    """A block whose particles are strewn, of uneven density and so of uneven volume."""
+    x = square_lattice((-0.5, -0.5), (0.5, 0.5), SPACING)
+    x += np.random.default_rng(3).uniform(-0.2, 0.2, x.shape) * SPACING
+    flow = body(x, SPACING, material, (1e3, 1e3, 0.0, 1e3))
+    flow.soil.density *= 1.0 + 0.1 * np.sin(9.0 * flow.soil.x[:, 0])
+    flow.begin(0.0)
+    return flow
+
+
+def mean_by_all_pairs(flow, values):
+    """The mean of `soften` by the loops of its definition."""
+    soil = flow.soil
+    found = np.zeros(soil.soil)
+    for i in range(soil.soil):
+        weights = np.zeros(soil.soil)
+        for j in range(soil.soil):
+            r = math.dist(soil.x[i], soil.x[j])
+            if r < SUPPORT * H and soil.material[i] == soil.material[j]:
+                weights[j] = soil.record[j, VOLUME] * (1.0 - (r / (SUPPORT * H)) ** 2)
+        found[i] = (weights * values).sum() / weights.sum()
+    return found
+
+
+def softened(flow, sheared):
+    soil = flow.soil
+    before = soil.plastic_shear.copy()
+    soften(soil.soil, soil.record, soil.material, sheared, soil.plastic_shear, flow.near)
+    return soil.plastic_shear - before
+
+
+@pytest.mark.parametrize("materials", [1, 2])
+def test_strain_grows_by_the_mean_of_neighbours_of_the_same_material(materials):
+    flow = clay()
+    flow.soil.material[:] = np.arange(flow.soil.count) % materials
+    sheared = np.random.default_rng(4).uniform(0.0, 1.0, flow.soil.soil)
+    # sums of at most 30 positive terms of at most 1
+    np.testing.assert_allclose(softened(flow, sheared), mean_by_all_pairs(flow, sheared), rtol=60 * EPS)
+
+
+def test_even_strain_stays_and_no_mean_leaves_its_values():
+    flow = clay()
+    np.testing.assert_allclose(softened(flow, np.full(flow.soil.soil, 0.3)), 0.3, rtol=60 * EPS)
+    sheared = np.zeros(flow.soil.soil)
+    sheared[44] = 1.0  # of one particle: some for each neighbour, nowhere more than it has
+    found = softened(flow, sheared)
+    assert found.min() >= 0.0
+    assert found.max() < 0.3
+    assert (found > 0.0).sum() > 12
+
+
+def test_a_step_adds_the_mean_of_what_it_sheared():
+    def stepped():
+        flow = clay()
+        flow.soil.v[:, 0] = np.sign(flow.soil.x[:, 1])
+        flow.start()
+        for _ in range(40):
+            flow.advance()
+        before = flow.soil.plastic_shear.copy()
+        flow.advance()
+        return flow, flow.soil.plastic_shear - before
+
+    flow, grown = stepped()
+    assert flow.sheared.max() > 1e-4
+    # the sum before has lost as many digits as it is larger
+    np.testing.assert_allclose(grown, mean_by_all_pairs(flow, flow.sheared), rtol=60 * EPS, atol=4 * EPS)
+    set_threads(2)
+    again, same = stepped()
+    np.testing.assert_array_equal(same, grown)
+    np.testing.assert_array_equal(again.soil.stress, flow.soil.stress)
+
+
+def test_soil_that_does_not_soften_has_none_of_it(monkeypatch):
+    monkeypatch.setattr(flow_module, "soften", None)
+    flow = clay(Material(1e6, 1600.0, sin_friction=0.0, cohesion_intercept=1e3))
+    flow.soil.v[:, 0] = np.sign(flow.soil.x[:, 1])
+    flow.start()
+    for _ in range(20):
+        flow.advance()
+    assert flow.sheared.size == 0
+    assert flow.soil.plastic_shear.max() > 1e-4
+    with pytest.raises(TypeError):  # the twin
+        clay().strain(1e-4)
+
+
+def row_weights(ratio):
+    """Weights of rows of a square lattice in the mean, from a particle's own on."""
+    reach = range(-4, 5)
+    return [sum(max(0.0, 1.0 - (i * i + j * j) / (SUPPORT * ratio) ** 2) for i in reach) for j in range(5)]
+
+
+@pytest.mark.parametrize("ratio", [1.2, RATIO, 1.7])
+def test_a_slip_that_two_rows_share_softens_by_the_width_of_a_band(ratio):
+    own, following, *others = row_weights(ratio)
+    whole = own + 2.0 * (following + sum(others))
+    strain = 0.5 * (own + following) / whole  # half of the slip over a spacing in each row
+    assert band_width(Smoothing("wendland", ratio * SPACING), SPACING) == pytest.approx(SPACING / strain, rel=30 * EPS)
+    # one row that took all of the slip would soften by a sixth more, where without the mean it were by twice as much
+    assert 1.0 < own / whole / strain < 1.17
+
+
+def test_damping_bears_of_a_slip_what_the_row_says():
+    """Shear stress between two rows that slip past each other by 1 m/s, each with half of it a spacing as gradient."""
+    at = [(i, j) for i in range(-4, 5) for j in range(-4, 4)]
+    speed, gradient = (lambda j: 0.0 if j < 0 else 1.0), (lambda j: 0.5 if j in (-1, 0) else 0.0)
+    stress = 0.0
+    for i, j in at:
+        for k in range(-4, 4):
+            apart, r = j - k, math.hypot(i, j - k)
+            if k >= 0 or j < 0 or r >= SUPPORT * RATIO:
+                continue
+            left = speed(j) - speed(k) - 0.5 * (gradient(j) + gradient(k)) * apart
+            stress -= left * i * i * kernel_slope(1, r / RATIO, RATIO) / (r * r + 0.01 * RATIO**2)
+    assert pytest.approx(stress * DENSITY * math.sqrt(GRAVITY) * PACE, rel=0.1) == BRAKE
