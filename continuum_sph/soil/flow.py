@@ -17,7 +17,7 @@ from continuum_sph.soil.leapfrog import kick, kick_drift
 from continuum_sph.soil.material import DENSITY, SOFTENED_STRAIN, TENSION, table
 from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.parameters import RULES, SoilLaw
-from continuum_sph.soil.softening import soften
+from continuum_sph.soil.softening import average
 from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import Straining, deform
 from continuum_sph.soil.tension import repel_under_tension
@@ -41,7 +41,7 @@ class SoilFlow:
     limits the next;  limit : longest step that other layers allow, s;  stopped : times a particle was stopped at
     ``lower`` or ``upper`` (2,) m, infinite unless set;  sound_rate : largest c/h, 1/s;  max_speed : m/s;
     strained : the last step, s, for which the diffusion that is under way was bounded;  sheared (soil,) : plastic shear
-    strain of the last step where soil softens, else empty;  before_force : called before
+    strain of the last step, averaged, where soil softens, else empty;  before_force : called before
     accelerations, to overwrite ``soil.force``.
     """
 
@@ -68,7 +68,7 @@ class SoilFlow:
         self.refuse_other_sizes()
         self.pulling = self.law.repulsion > 0.0 and bool((self.table[:, TENSION] > 0.0).any())
         softens = bool((self.table[:, SOFTENED_STRAIN] > 0.0).any())
-        self.sheared = np.zeros(soil.soil if softens else 0)
+        self.sheared, self.mean = np.zeros((2, soil.soil if softens else 0))
         self.split = np.zeros(soil.count, np.int64)
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
         # Walls do not interact.
@@ -130,7 +130,10 @@ class SoilFlow:
             ),
         )  # fmt: skip
         if self.sheared.size:
-            soften(soil.soil, soil.record, soil.material, self.sheared, soil.plastic_shear, self.near)
+            for _ in range(law.averages):
+                average(soil.soil, soil.record, soil.material, self.sheared, self.mean, self.near)
+                self.sheared, self.mean = self.mean, self.sheared
+            soil.plastic_shear += self.sheared
         self.strained = step
         self.sound_rate = float(max_sound2) ** 0.5 / law.smoothing.length
 

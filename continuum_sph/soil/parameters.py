@@ -47,7 +47,8 @@ class SoilLaw:
     passage of sound through h, which never rests (for comparison);  spacing_recovery : A, how fast particles nearer
     than a spacing part, per shear strain, 0: soil does not swell either;  repulsion : A of `tension`, where soil bears
     tension;  drag : 1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin :
-    turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49.
+    turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49;  averages : over neighbours, of what
+    shears in a step, where soil softens, see `softening`.
     """
 
     smoothing: Smoothing
@@ -65,6 +66,7 @@ class SoilLaw:
     settle: float = 0.0
     printed_spin: bool = False
     courant: float = 0.25
+    averages: int = 1
 
     def __post_init__(self) -> None:
         """InputError when diffusion at the rate of sound takes more of a zig-zag in a step than there is."""

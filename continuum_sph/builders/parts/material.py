@@ -7,8 +7,6 @@ from continuum_sph.scene.rate import RateSection
 from continuum_sph.scene.softening import SofteningSection
 from continuum_sph.scene.soil import SoilSection
 from continuum_sph.soil import Material, Rate, Softening
-from continuum_sph.soil.softening import band_width
-from continuum_sph.water.smoothing import Smoothing
 
 
 def material_of(section: SoilSection) -> Material:
@@ -44,8 +42,8 @@ def softening_of(section: SofteningSection) -> Softening:
     return Softening(math.sin(left), section.cohesion * math.cos(left), section.shear_strain)
 
 
-def banded(material: Material, section: SoilSection, smoothing: Smoothing, spacing: float) -> Material:
-    """A ``material`` whose bands of particles at ``spacing`` (m) soften by the slip that those of the soil do.
+def banded(material: Material, section: SoilSection, width: float) -> Material:
+    """A ``material`` whose bands of particles, of a ``width`` (m), soften by the slip that those of the soil do.
 
     Soil that softens shears in bands, which grains make some ten diameters wide (Roscoe, Géotechnique 20 (1970) 129;
     Mühlhaus & Vardoulakis, Géotechnique 37 (1987) 271) and particles `softening.band_width`: γs goes with the ratio of
@@ -53,5 +51,5 @@ def banded(material: Material, section: SoilSection, smoothing: Smoothing, spaci
     """
     if not (section.softening and material.softening):
         return material
-    strain = material.softening.shear_strain * section.softening.band_width / band_width(smoothing, spacing)
+    strain = material.softening.shear_strain * section.softening.band_width / width
     return replace(material, softening=replace(material.softening, shear_strain=strain))

@@ -25,6 +25,7 @@ from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw, porosity
 from continuum_sph.soil.parameters import RULES
+from continuum_sph.soil.softening import averages_of, band_width
 from continuum_sph.soil.steadying import WEIGHTLESS, steadied
 from continuum_sph.soil.stress import XX, XY, YY, ZZ
 from continuum_sph.soil.walls import HOLDING, SLIPPING
@@ -298,10 +299,11 @@ def soil_law(scene: Scene) -> SoilLaw:
     slowest = 0.5 * math.pi * math.sqrt(softest / material.density) / section.height
     smoothing = Smoothing(numerics.kernel, numerics.smoothing_ratio * numerics.spacing)
     damping, diffusion = steadied(material, scene.gravity, section.height, smoothing.length)
+    averages = averages_of(smoothing, numerics.spacing, section.softening.band_width) if section.softening else 1
     return SoilLaw(
         smoothing,
         numerics.spacing,
-        (banded(material, section, smoothing, numerics.spacing),),
+        (banded(material, section, band_width(smoothing, numerics.spacing, averages)),),
         (0.0, -scene.gravity),
         damping=damping_of(section, numerics, damping),
         printed_damping=choice.damping_of == "approach",
@@ -313,6 +315,7 @@ def soil_law(scene: Scene) -> SoilLaw:
         drag=slowest,
         settle=choice.settle,
         courant=numerics.courant,
+        averages=averages,
     )
 
 

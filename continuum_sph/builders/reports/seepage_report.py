@@ -7,14 +7,17 @@ import numpy as np
 
 from continuum_sph.builders.parts.air import air_report, dry_pores
 from continuum_sph.builders.parts.faces import FARTHEST
+from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, water_counts
 from continuum_sph.builders.parts.sheet_pile import LEAST, LEAST_BARE, OPEN, given_heads, ground_at, resolved
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
 from continuum_sph.builders.reports.soil_report import (
     SNAPSHOT,
+    averaging_seconds,
     report_origin,
     report_rate,
+    report_softening,
     report_watched,
     warn_of_steep_faces,
 )
@@ -81,6 +84,9 @@ def seepage_report(scene: Scene) -> Report:
             f"soil.water_table lies over all ground and water, {table - section.height:.3g} m over the highest ground: "
             "pores are full to their surface; water above it is that of [[water.column]] or [[reservoir]]"
         )
+    buoyant = section.density - (1.0 - section.porosity) * state.density
+    pressure = 0.5 * buoyant * scene.gravity * section.height * (1.0 + material_of(section).rest)
+    report_softening(out, section, soil_law(scene), pressure)
     report_rate(out, section, wet=True)
     warn_of_steep_faces(scene, out)
     report_origin(out, section.origin)
@@ -127,7 +133,8 @@ def cost(scene: Scene, out: Report, law: Law, step: float, there: Counts) -> Non
     if not soil_section(scene).held:
         parts.append((MOVING_SOIL, there.soil))
     openings = len(scene.face) + len(scene.reservoir) + (scene.pile is not None)
-    report_run(out, scene, KIND, there.soil + fluid, steps, step_seconds(*parts) + OPENING * openings)
+    seconds = step_seconds(*parts) + OPENING * openings + averaging_seconds(soil_law(scene), there.soil)
+    report_run(out, scene, KIND, there.soil + fluid, steps, seconds)
     size = 1000.0 + SNAPSHOT * (there.soil + there.fluid)
     report_output(out, scene.time.end, scene.output, round(steps), size)
 

@@ -7,12 +7,14 @@ import numpy as np
 from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.watched import watched_rows
-from continuum_sph.builders.reports.time_report import SOIL, STAGE, report_run, step_seconds
+from continuum_sph.builders.reports.time_report import AVERAGE, SOIL, STAGE, report_run, step_seconds
 from continuum_sph.scene.material_file import VISCOSITY, Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection
+from continuum_sph.soil import SoilLaw
 from continuum_sph.soil.material import Material
 from continuum_sph.soil.parameters import RULES
+from continuum_sph.soil.softening import band_width
 from porescale.common.api.report import Report, report_output
 from porescale.common.core.constants import GRAVITY
 
@@ -60,7 +62,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
         out.row("angle at which an endless slope shears", math.degrees(limit), "degrees", "without cohesion")
     warn_of_rest(out, section, material, material.density * scene.gravity * section.height)
     warn_of_steep_faces(scene, out)
-    report_softening(out, section, law.materials[0], pressure)
+    report_softening(out, section, law, pressure)
     report_rate(out, section, wet=section.suction is not None)
     out.heading("steps")
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
@@ -69,7 +71,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
     steps = scene.time.end / min(step, bound)
     out.row("steps", round(steps))
     out.row("memory", BYTES * count / 2**20, "MiB")
-    seconds = step_seconds((SOIL, count)) + stages * step_seconds((STAGE, count))
+    seconds = step_seconds((SOIL, count)) + stages * step_seconds((STAGE, count)) + averaging_seconds(law, count)
     report_run(out, scene, "soil with suction" if stages else "soil", count, steps, seconds)
     report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
@@ -129,18 +131,22 @@ def warn_of_steep_faces(scene: Scene, out: Report) -> None:
         )
 
 
-def report_softening(out: Report, section: SoilSection, material: Material, pressure: float) -> None:
+def report_softening(out: Report, section: SoilSection, law: SoilLaw, pressure: float) -> None:
     """Add to a report what strength falls to, and by what slip; warn where particles lose it at once.
 
-    material : as particles have it;  pressure : mean stress at the floor, Pa.
+    pressure : mean stress at the floor, Pa.
     """
-    if section.softening is None or material.softening is None:
+    left, material = section.softening, law.materials[0]
+    if left is None or material.softening is None:
         return
-    left, strain = section.softening, material.softening.shear_strain
+    out.heading("strength")
     out.row("angle of friction after large strains", math.degrees(left.friction_angle), "degrees")
     out.row("cohesion after large strains", left.cohesion, "Pa")
     slip = left.shear_strain * left.band_width
-    out.row("slip of a shear band that leaves 1/e of the difference", slip, "m", f"particles: strain of {strain:.3g}")
+    strain = slip / (2.0 * law.spacing)  # of the two rows of a band of particles
+    out.row("slip of a shear band that leaves 1/e of the difference", slip, "m", f"two rows strain by {strain:.3g}")
+    width = band_width(law.smoothing, law.spacing, law.averages)
+    out.row("width of a band of particles", width, "m", f"averages in a step: {law.averages}")
     lost = material.cohesion_intercept - material.softening.cohesion_intercept
     lost += pressure * (material.sin_friction - material.softening.sin_friction)
     elastic = lost / (material.shear_modulus * material.stiffness_at(pressure))
@@ -150,6 +156,13 @@ def report_softening(out: Report, section: SoilSection, material: Material, pres
             f"gives back, {elastic:.2g}: it breaks at once; lower numerics.spacing by a factor of "
             f"{elastic / strain:.2g}, or raise soil.stiffness"
         )
+
+
+def averaging_seconds(law: SoilLaw, count: int) -> float:
+    """Nominal seconds of a step in which ``count`` particles of soil average what they shear, where it softens."""
+    if not any(material.softening for material in law.materials):
+        return 0.0
+    return law.averages * step_seconds((AVERAGE, count))
 
 
 def report_rate(out: Report, section: SoilSection, *, wet: bool) -> None:

@@ -39,6 +39,8 @@ OPENING = 8e-5
 """Besides, of each face, reservoir and pile."""
 STAGE = Pace(1e-4, 1.2e-7)
 """Of the flow of water under suction."""
+AVERAGE = Pace(2e-5, 1.5e-7)
+"""Of each average over neighbours where soil softens."""
 PHASES = {BUILDING: (0.5, 0.0, 1e-5), RECORDING: (0.2, 0.06, 1e-6), FINISHING: (3.0, 0.07, 2e-6)}
 """Nominal seconds of what is no step: once, of each snapshot, and for each particle in it."""
 KERNELS = 25.0

@@ -82,10 +82,14 @@ def scene(softening, **soil):
 def test_a_scene_names_its_softening_and_particles_have_its_slip():
     given = scene(GIVEN)
     assert material_of(given.soil).softening == Softening(math.sin(math.radians(18.0)), 0.0, 0.1)
-    (material,) = soil_law(given).materials
-    law = soil_law(given)
-    slip = material.softening.shear_strain * band_width(law.smoothing, given.numerics.spacing)
-    assert slip == pytest.approx(0.1 * 0.02, rel=4 * EPS)
+    for wide in (0.02, 0.2, 0.5):  # 0.4, 4, 10 spacings
+        law = soil_law(scene(GIVEN | {"band_width": wide}))
+        strain = law.materials[0].softening.shear_strain
+        width = band_width(law.smoothing, given.numerics.spacing, law.averages)
+        assert strain * width == pytest.approx(0.1 * wide, rel=4 * EPS)
+        # of bands that particles resolve the strain itself, within what one more average would change
+        wider = band_width(law.smoothing, given.numerics.spacing, law.averages + 1) / width
+        assert wide < width or 1.0 <= strain / 0.1 < wider
     assert soil_law(scene(None)).materials[0].softening is None
 
 
