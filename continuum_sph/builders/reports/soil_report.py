@@ -8,6 +8,7 @@ from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.watched import watched_rows
 from continuum_sph.builders.reports.time_report import AVERAGE, SOIL, STAGE, report_run, step_seconds
+from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.material_file import VISCOSITY, Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection
@@ -147,6 +148,12 @@ def report_softening(out: Report, section: SoilSection, law: SoilLaw, pressure: 
     out.row("slip of a shear band that leaves 1/e of the difference", slip, "m", f"two rows strain by {strain:.3g}")
     width = band_width(law.smoothing, law.spacing, law.averages)
     out.row("width of a band of particles", width, "m", f"averages in a step: {law.averages}")
+    if width > left.band_width * (1.0 + WHOLE):
+        out.warn(
+            f"a band of particles is {width / left.band_width:.3g} times as wide as soil.softening.band_width: strain "
+            "that is in no band yet softens soil as much sooner, so when it fails hangs on the spacing; lower "
+            "numerics.spacing, or widen the band and lower shear_strain by as much"
+        )
     lost = material.cohesion_intercept - material.softening.cohesion_intercept
     lost += pressure * (material.sin_friction - material.softening.sin_friction)
     elastic = lost / (material.shear_modulus * material.stiffness_at(pressure))

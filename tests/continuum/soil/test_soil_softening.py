@@ -19,7 +19,7 @@ from porescale.common.schema.sections import validate
 FIRM = {"sin_friction": 0.5, "cohesion_intercept": 800.0, "sin_dilatancy": 0.2, "tension": 1000.0}
 SOFT = Softening(0.3, 200.0, 0.05)
 PLAIN, SOFTENS = Material(1e6, 1590.0, **FIRM), Material(1e6, 1590.0, **FIRM, softening=SOFT)
-GIVEN = {"friction_angle": "18 degree", "shear_strain": 0.1, "band_width": "2 cm"}
+GIVEN = {"friction_angle": "18 degree", "shear_strain": 0.1, "band_width": "20 cm"}
 EPS = float(np.finfo(np.float64).eps)
 
 
@@ -93,12 +93,15 @@ def test_a_scene_names_its_softening_and_particles_have_its_slip():
     assert soil_law(scene(None)).materials[0].softening is None
 
 
-def test_check_says_the_slip_and_warns_of_particles_that_break_at_once():
+def test_check_says_the_slip_and_warns_of_bands_that_are_wide_or_break_at_once():
     said = report(scene(GIVEN))
     names = {row.name: row.value for group in said.groups.values() for row in group}
     assert names["angle of friction after large strains"] == pytest.approx(18.0)
-    assert names["slip of a shear band that leaves 1/e of the difference"] == pytest.approx(2e-3)
+    assert names["slip of a shear band that leaves 1/e of the difference"] == pytest.approx(2e-2)
     assert not said.warnings
+    narrow = report(scene(GIVEN | {"band_width": "9 cm"}))  # that of particles is 18 cm
+    assert [line for line in narrow.warnings if "is 1.99 times as wide as soil.softening.band_width" in line]
+    assert len(narrow.warnings) == 1
     brittle = report(scene(GIVEN | {"band_width": "10 um"}))
     assert [line for line in brittle.warnings if "it breaks at once; lower numerics.spacing" in line]
 
