@@ -40,7 +40,10 @@ def parts_of(it: Scene) -> list[str]:
         "corrected gradients": numerics.gradient == "corrected", "shifting": numerics.shifting > 0.0,
         "energy book": it.output.energy, "XSPH": numerics.xsph > 0.0, "walls that hold": it.tank.walls != "slip",
         "walls of images": it.tank.wall_particles == "images", "soil": it.soil is not None,
-        "air": it.air is not None,
+        "air": it.air is not None, "faces": bool(it.face), "sheet pile": it.pile is not None,
+        "held": it.soil is not None and it.soil.held, "suction": it.soil is not None and it.soil.suction is not None,
+        "rate": it.soil is not None and it.soil.rate is not None,
+        "softening": it.soil is not None and it.soil.softening is not None,
     }  # fmt: skip
     return [name for name, there in chosen.items() if there]
 
@@ -71,13 +74,13 @@ def alone(**more: Any) -> BuiltScene:
     return BuiltScene(made, parts_of(it), made.flow.layer.fluid, made.advance, PlainColumn(made.flow).advance)
 
 
-def ground(**more: Any) -> Scene:
+def ground(soil: Table | None = None, **more: Any) -> Scene:
     """Soil at rest in a tank, of the size of the column of water."""
     body = {"outline": [[0, 0], [1, 0], [1, 2], [0, 2]]}
     table: Table = {
         "tank": {"width": 1.0, "height": 2.5, "lid": False},
         "soil": {"density": 1590.0, "porosity": 0.4, "stiffness": 2e6, "permeability": 0.01, "stress": "geostatic",
-                 "sides": "slip", "body": [body]},
+                 "sides": "slip", "body": [body]} | (soil or {}),
         "numerics": NUMERICS, "time": {"end": 1.0}, "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
     }  # fmt: skip
     return validate(Scene, table | more)
@@ -87,6 +90,8 @@ def settled(it: Scene) -> tuple[Simulation, int]:
     """The simulation of a scene with soil, on its way, and how many particles it has."""
     made = Simulation(it)
     made.advance(SETTLING)
+    if it.soil is not None and it.soil.suction is not None:
+        return made, made.flow.ground.soil.soil
     if it.dry:
         return made, made.flow.soil.soil
     return made, made.flow.water.layer.fluid + made.flow.water.skeleton.count
@@ -115,6 +120,11 @@ SETTLING, FEWER = 40, 10
 """Steps before timing, and at a time: those of soil take ten times those of water."""
 WET: Table = {"water": {"pressure": "hydrostatic", "column": [COLUMN]}}
 ABOVE: Table = {"pressure": "hydrostatic", "column": [{"bottom": 1.0, "width": 1.0, "height": 1.0}]}
+FULL: Table = {"soil": {"saturated": True}, "tank": {"width": 1.0, "height": 2.0}}
+HEAD: Table = {"name": "lid", "side": "lid", "head": 2.5}
+MOIST: Table = {"alpha": 5.0, "n": 3.0, "water_table": 1.0}
+SAND: Table = {"friction_angle": "20 degree", "shear_strain": 0.1, "band_width": 4.0 * SPACING}
+BEADS: Table = {"friction_angle": "33 degree", "inertial_number": 0.3, "grain_diameter": "1 mm"}
 UNSATURATED: Table = {"water": ABOVE, "air": {"density": 20.0, "pressure": 5e4}}
 DISC: Table = {"density": 500.0, "law": "liquid", "disc": [{"x": 0.5, "y": 1.0, "radius": 0.2}]}
 ENERGY_BUDGET: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
@@ -146,5 +156,18 @@ KINDS = SceneKinds([
     SceneKind(SOAKED, "particle", SOIL, in_soil({}, **WET), FEWER, "twice the particles, in three kinds of pairs"),
     SceneKind("air in soil", "particle", SOAKED, in_soil(WET, **UNSATURATED), FEWER,
          "a second fluid, and powers of its density"),
+    SceneKind("soil and water, held", "particle", SOAKED, in_soil(WET, **WET, soil={"held": True}), FEWER,
+         "no stress of soil"),
+    SceneKind("face", "particle", SOAKED, in_soil(FULL, **FULL, face=[HEAD]), FEWER,
+         "soil and water of a closed tank beside it"),
+    SceneKind("sheet pile", "particle", SOAKED, in_soil(WET, **WET, pile={"x": 0.5, "tip": 1.0}), FEWER,
+         "pairs across it are left out as lists are made"),
+    SceneKind("suction", "particle", SOIL, in_soil({}, soil={"suction": MOIST}, water={"sound_speed": 40.0}),
+         FEWER,
+         "stages of the flow of water between steps of the soil"),
+    SceneKind("friction that grows with the rate", "particle", SOIL, in_soil({}, soil={"rate": BEADS}), FEWER,
+         "a root where soil yields"),
+    SceneKind("strength that softens", "particle", SOIL, in_soil({}, soil={"softening": SAND}), FEWER,
+         "a pass over pairs for each average, here one"),
 ])  # fmt: skip
 """What `continuum-sph study parts` measures."""

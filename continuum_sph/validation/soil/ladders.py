@@ -52,8 +52,8 @@ for name, title, because, options in (
     title="Largest error of the shear stress of a layer that softens along a band, over the strength that is lost",
     along="rows of particles",
     levels=(10, 20, 40),
-    because="no order is expected: with 10 rows there are but 4 between the platens, and what damping bears of the slip, "
-    "0.055 ρ α c h v/Δx, 0.3, 0.7 and 1.4 % here, grows as the spacing falls",
+    because="no order is expected: with 10 rows there are but 4 between the platens, and what damping bears of the "
+    "slip, 0.055 ρ α c h v/Δx, 0.3, 0.7 and 1.4 % here, grows as the spacing falls",
 )
 def slip_error(rows: float) -> float:
     """Of a layer of clay that is sheared slowly."""
