@@ -154,6 +154,12 @@ def report_softening(out: Report, section: SoilSection, law: SoilLaw, pressure: 
             "that is in no band yet softens soil as much sooner, so when it fails hangs on the spacing; lower "
             "numerics.spacing, or widen the band and lower shear_strain by as much"
         )
+    if left.band_width >= band_width(law.smoothing, law.spacing, law.averages + 1):
+        out.warn(
+            f"a band of particles is {width:.3g} m wide at most, {left.band_width / width:.3g} times less than "
+            "soil.softening.band_width: strain that is in no band yet softens soil as much later; raise "
+            "numerics.spacing, or narrow the band and raise shear_strain by as much"
+        )
     lost = material.cohesion_intercept - material.softening.cohesion_intercept
     lost += pressure * (material.sin_friction - material.softening.sin_friction)
     elastic = lost / (material.shear_modulus * material.stiffness_at(pressure))

@@ -102,6 +102,9 @@ def test_check_says_the_slip_and_warns_of_bands_that_are_wide_or_break_at_once()
     narrow = report(scene(GIVEN | {"band_width": "9 cm"}))  # that of particles is 18 cm
     assert [line for line in narrow.warnings if "is 1.99 times as wide as soil.softening.band_width" in line]
     assert len(narrow.warnings) == 1
+    wide = report(scene(GIVEN | {"band_width": "2 m"}))
+    assert [line for line in wide.warnings if "0.78 m wide at most, 2.56 times less than" in line]
+    assert len(wide.warnings) == 1
     brittle = report(scene(GIVEN | {"band_width": "10 um"}))
     assert [line for line in brittle.warnings if "it breaks at once; lower numerics.spacing" in line]
 
