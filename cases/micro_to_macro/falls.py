@@ -1,4 +1,7 @@
-"""A dry column let go, of grains and of the soil that they make; how far, how high and how soon, read alike of both."""
+"""A dry column let go, of grains and of the soil that they make; how far, how high and how soon, read alike of both.
+
+The floor of the soil holds it, so grains fall on held discs of their own size: on a flat floor they slide and roll.
+"""
 
 import math
 from collections.abc import Callable, Sequence
@@ -17,6 +20,8 @@ FRONT = 0.95  # share of the mass that lies behind the front: single grains that
 WALL = 0.01  # m from the wall, where the height is taken
 GONE = 0.01  # m that the centre has gone when the time is taken
 LOOKS = 0.01  # s between looks at a column
+LOOSE = "grains.packing.settling_friction=1", "grains.packing.settling_rolling_friction=0.1"
+"""Settings of column.toml for grains as loose as the critical state, whose strength the soil has, as in slope.toml."""
 
 
 @dataclass(frozen=True)
@@ -61,13 +66,33 @@ def followed(simulation: Any, centre: Callable[[], float]) -> tuple[Floats, Floa
     return times, centres
 
 
-def grains_fall(seed: int, settings: Sequence[str] = ()) -> Fall:
-    """The column of grains of column.toml with another packing, and ``settings``."""
-    simulation = ps.build(ps.load(HERE / "column.toml", settings=[f"grains.packing.seed={seed}", *settings]))
+def held_discs(scene: ps.Scene) -> list[dict[str, float]]:
+    """Discs on the floor of a ``scene``, side by side, of about the grains' size: none stands across the gate."""
+    assert scene.grains
+    assert scene.grains.packing
+    assert scene.gate
+    size = scene.gate.x / round(scene.gate.x / scene.grains.packing.diameter)
+    count = math.floor(scene.domain.width / size + 0.5)
+    return [{"x": (k + 0.5) * size, "y": 0.5 * size, "diameter": size} for k in range(count)]
+
+
+def grains_fall(seed: int, settings: Sequence[str] = (), rough: bool = True) -> Fall:
+    """The column of grains of column.toml, loose, with another packing, and ``settings``.
+
+    rough : on held discs, whose tops are the floor that heights are above; else on a flat floor.
+    """
+    given = [f"grains.packing.seed={seed}", *LOOSE, *settings]
+    scene, discs = ps.load(HERE / "column.toml", settings=given), []
+    if rough:
+        discs = held_discs(scene)
+        scene = scene.with_({"disc": discs})
+    simulation = ps.build(scene)
     assert simulation.grains
     d = simulation.grains.discs
-    times, centre = followed(simulation, lambda: float(np.average(d.position[:, 0], weights=d.mass)))
-    return Fall(times, centre, d.position.copy(), d.mass.copy())
+    free = slice(d.count - len(discs))
+    mass, floor = d.mass[free].copy(), discs[0]["diameter"] if discs else 0.0
+    times, centre = followed(simulation, lambda: float(np.average(d.position[free, 0], weights=mass)))
+    return Fall(times, centre, d.position[free] - (0.0, floor), mass)
 
 
 def soil_falls(settings: Sequence[str] = ()) -> Fall:

@@ -4,7 +4,7 @@ import math
 import sys
 import tomllib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -25,7 +25,7 @@ from flows import Bed, bed, darcy
 from layers import Layer
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from slides import Slopes, draw_slopes, numbers_of_slopes, slopes
+from slides import RATED, Slopes, draw_slopes, ends_of, numbers_of_slopes, slopes
 
 import continuum_sph as cs
 import porescale as ps
@@ -35,10 +35,7 @@ from porescale import GRAVITY, Floats
 from porescale.output import conclude, options
 
 HERE = Path(__file__).resolve().parent
-MIDDLE = 12  # rows of soil whose angle of friction is varied
-DEPTH = 0.03  # m, of the column
-LITTLE = f"soil.numerics.damping_viscosity={0.25 * DEPTH * math.sqrt(GRAVITY * DEPTH):.4g}"
-"""A quarter of the damping that soil has if nothing is said, H √(g H)."""
+MIDDLE = 12  # rows of soil whose numbers are varied
 FLOW_ROWS = (10, 20, 40)
 GRADIENT = 0.2
 SEEN: dict[str, tuple[str, Callable[[Fall], float]]] = {
@@ -49,28 +46,29 @@ SEEN: dict[str, tuple[str, Callable[[Fall], float]]] = {
 }
 """What is read of a column that fell: unit, and how."""
 FLOW, AT_POROSITY = "q over k i", "q over k i, k at the porosity of the bed"
-GRAINS, SOIL, LESS = "#8c1c2f", "#2a6f97", "#e9a23b"
+GRAINS, SOIL, FASTER = "#8c1c2f", "#2a6f97", "#e9a23b"
 
 
 @dataclass
 class Columns:
-    """Columns that fell: of grains, one for each packing; of soil and of soil with little damping, one for each of
-    ``rows``; of soil whose angle is at either end of its interval."""
+    """Columns that fell: of grains, one for each packing; of soil and of soil whose friction grows with the rate, one
+    for each of ``rows``; of both, with each of its numbers at either end of its interval."""
 
     rows: Sequence[int]
     grains: list[Fall]
     soil: list[Fall]
-    less: list[Fall]
-    ends: list[Fall] = field(default_factory=list)
+    rated: list[Fall]
+    ends: list[tuple[Fall, Fall]]
+    rated_ends: list[tuple[Fall, Fall]]
 
-    def compared(self, less: bool = False) -> list[Compared]:
-        """Every quantity of SEEN at both scales, or with ``less`` damping of the soil."""
+    def compared(self, rated: bool = False) -> list[Compared]:
+        """Every quantity of SEEN at both scales, or with friction of the soil that grows with the rate."""
+        fell, ends = (self.rated, self.rated_ends) if rated else (self.soil, self.ends)
         made = []
         for name, (unit, of) in SEEN.items():
             grains = np.array([of(it) for it in self.grains])
-            soil = np.array([of(it) for it in (self.less if less else self.soil)])
-            given = 0.5 * abs(of(self.ends[1]) - of(self.ends[0]))
-            made.append(Compared(name, unit, grains, self.rows, soil, given))
+            given = math.hypot(*(0.5 * (of(high) - of(low)) for low, high in ends))
+            made.append(Compared(name, unit, grains, self.rows, np.array([of(it) for it in fell]), given))
         return made
 
 
@@ -92,16 +90,19 @@ def known(name: str) -> tuple[float, float]:
 def columns_fall(count: int, rows: Sequence[int], end: float) -> Columns:
     """``count`` columns of grains and those of soil, until ``end`` (s)."""
     stop = f"time.end={end!r}"
-    angle, error = known("critical_friction_angle")
 
     def soil(row: int, *settings: str) -> Fall:
         """A column of ``row`` particles over its depth of 3 cm."""
         return soil_falls((f"numerics.spacing={0.03 / row!r}", stop, *settings))
 
+    def ends(*settings: str) -> list[tuple[Fall, Fall]]:
+        """Columns with each number at either end of its interval."""
+        row = min(MIDDLE, rows[-1])
+        return [(soil(row, *settings, low), soil(row, *settings, high)) for low, high in ends_of(settings)]
+
     return Columns(
         rows, [grains_fall(seed, (stop,)) for seed in range(1, count + 1)],
-        [soil(row) for row in rows], [soil(row, LITTLE) for row in rows],
-        [soil(min(MIDDLE, rows[-1]), f"soil.friction_angle={it!r}") for it in (angle - error, angle + error)],
+        [soil(row) for row in rows], [soil(row, *RATED) for row in rows], ends(), ends(*RATED),
     )  # fmt: skip
 
 
@@ -152,8 +153,8 @@ def layers(count: int) -> tuple[list[Layer], list[Layer], list[Compared]]:
 
 def numbers_of(flow: Sequence[Compared], columns: Columns, angle: float) -> dict[str, float | None]:
     """The rows of expected.toml; None where no bed was asked for."""
-    front, centre, height, time = columns.compared()
-    less = columns.compared(less=True)[0]
+    front, centre = columns.compared()[:2]
+    rated = {it.name: float(it.soil[-1] / it.grains.mean()) for it in columns.compared(rated=True)}
     made: dict[str, float | None] = {
         "flow through grains over Darcy's": None, "flow through grains over Darcy's at their porosity": None,
         "flow through soil over Darcy's": None,
@@ -166,17 +167,17 @@ def numbers_of(flow: Sequence[Compared], columns: Columns, angle: float) -> dict
         "mass of the column of soil over that of grains": masses[1] / masses[0],
         "critical angle of an element over that of grains": angle,
         "front of fallen grains": float(front.grains.mean()), "front of fallen soil": float(front.soil[-1]),
-        "front of soil with little damping over that of grains": float(less.soil[-1] / less.grains.mean()),
         "centre of fallen grains": float(centre.grains.mean()), "centre of fallen soil": float(centre.soil[-1]),
-        "height of soil over that of grains at the wall": float(height.soil[-1] / height.grains.mean()),
-        "time of soil over that of grains": float(time.soil[-1] / time.grains.mean()),
+    } | {
+        f"{short} of soil that grows with the rate over that of grains": rated[name]
+        for short, name in zip(("front", "centre", "height", "time"), SEEN, strict=True)
     }  # fmt: skip
 
 
 def table(flow: Sequence[Compared], columns: Columns, slid: Slopes | None = None) -> list[str]:
     """What both scales have, and whether they agree, as lines of a table in Markdown."""
-    less = [replace(it, name=f"{it.name}, a quarter of the damping") for it in columns.compared(less=True)]
-    rows = [it.cells() for it in [*flow, *columns.compared(), *less, *(slid.compared() if slid else [])]]
+    rated = [replace(it, name=f"{it.name}, growing with the rate") for it in columns.compared(rated=True)]
+    rows = [it.cells() for it in [*flow, *columns.compared(), *rated, *(slid.compared() if slid else [])]]
     return ["| " + " | ".join(it) + " |" for it in [HEAD, ["---"] * len(HEAD), *rows]]
 
 
@@ -185,7 +186,7 @@ def draw(flow: Sequence[Compared], columns: Columns, rows: Floats, slid: Slopes 
     layers; bars are intervals at 95 %."""
     figure = Figure(figsize=(10.5, 8.5), layout="constrained")
     *panels, below, last = figure.subplots(3, 3).flat
-    draw_slopes(below, slid, (GRAINS, SOIL, LESS))
+    draw_slopes(below, slid, (GRAINS, SOIL, FASTER))
     last.axis("off")
     for at, it in enumerate(flow):
         scale(panels[0], it, at, SOIL, "continuum" if not at else None)
@@ -196,7 +197,7 @@ def draw(flow: Sequence[Compared], columns: Columns, rows: Floats, slid: Slopes 
     sine = (rows[:, 2] - rows[:, 3]) / (rows[:, 2] + rows[:, 3])
     panels[1].plot(100.0 * rows[:, 0], np.degrees(np.arcsin(sine)), color=SOIL, label="element of the continuum")
     panels[1].set(xlabel="axial strain, %", ylim=(0.0, 20.0), title="mobilised angle, °")
-    for panel, usual, less in zip(panels[2:6], columns.compared(), columns.compared(less=True), strict=True):
+    for panel, usual, rated in zip(panels[2:6], columns.compared(), columns.compared(rated=True), strict=True):
         own = 100.0 if usual.unit == "m" else 1.0
         mean, error = own * float(usual.grains.mean()), own * half(usual.grains)
         panel.axhspan(mean - error, mean + error, color=GRAINS, alpha=0.3, lw=0, label="grains, mean, 95 %")
@@ -204,11 +205,12 @@ def draw(flow: Sequence[Compared], columns: Columns, rows: Floats, slid: Slopes 
         spacing = 30.0 / np.array(usual.rows)
         panel.errorbar(spacing, own * usual.soil, own * usual.given, fmt="s-", color=SOIL, ms=4, capsize=3,
                        label="continuum")  # fmt: skip
-        panel.plot(spacing, own * less.soil, "d--", color=LESS, ms=4, label="damping a quarter")
+        panel.errorbar(spacing, own * rated.soil, own * rated.given, fmt="d--", color=FASTER, ms=4, capsize=3,
+                       label="growing with the rate")  # fmt: skip
         panel.set(xlim=(-0.3, None), xlabel="spacing, mm", title=f"{usual.name.split(',')[0].split(' until')[0]}")
         panel.set_ylabel("cm" if usual.unit == "m" else usual.unit)
     for fell, colour, label in ((columns.grains, GRAINS, "grains"), (columns.soil, SOIL, "continuum"),
-                                (columns.less, LESS, "damping a quarter")):  # fmt: skip
+                                (columns.rated, FASTER, "growing with the rate")):  # fmt: skip
         for one in fell:
             panels[6].plot(one.times, 100.0 * one.centre, color=colour, lw=0.7, label=label if one is fell[0] else None)
     panels[6].set(xlabel="time, s", title="centre of mass, cm")

@@ -123,18 +123,26 @@ def slopes(count: int) -> Slopes:
     return Slopes(steep, soil, rated, (left_open(()), left_open(RATED)), resting)
 
 
-def left_open(settings: Sequence[str]) -> float:
-    """Half of the interval of the soil's friction on STEEP that those of its numbers leave, squared and added."""
-    soil, total = cs.load(HERE / "ground.toml", settings=settings).soil, 0.0
+def ends_of(settings: Sequence[str]) -> list[tuple[str, str]]:
+    """A setting of ground.toml for either end of the interval of each number of friction that it has with
+    ``settings``."""
+    soil, ends = cs.load(HERE / "ground.toml", settings=settings).soil, []
     assert soil
     assert soil.origin
     for key, name in INTERVALS.items():
         if name in soil.origin.measured:
             mean, error = soil.origin.measured[name]
             off = half_of(error, len(soil.origin.made["seeds"]))
-            ends = [(*settings, f"{key}={mean + it!r}") for it in (-off, off)]
-            low, high = (soil_slides(layer(FEW, STEEP, it)).friction for it in ends)
-            total = math.hypot(total, 0.5 * (high - low))
+            ends.append((f"{key}={mean - off!r}", f"{key}={mean + off!r}"))
+    return ends
+
+
+def left_open(settings: Sequence[str]) -> float:
+    """Half of the interval of the soil's friction on STEEP that those of its numbers leave, squared and added."""
+    total = 0.0
+    for ends in ends_of(settings):
+        low, high = (soil_slides(layer(FEW, STEEP, (*settings, it))).friction for it in ends)
+        total = math.hypot(total, 0.5 * (high - low))
     return total
 
 

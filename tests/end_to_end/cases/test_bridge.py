@@ -84,11 +84,11 @@ def test_the_command_compares_and_writes_its_table_on_a_tiny_set_up(case):
     assert all(line.endswith("| no |") for line in late)
 
 
-def test_the_record_holds_the_front_with_little_damping_which_the_usual_does_not_reach():
+def test_the_record_holds_the_front_with_friction_that_grows_which_soil_without_goes_beyond():
     folder = CASES / "micro_to_macro"
     numbers = json.loads((folder / "recorded.json").read_text(encoding="utf-8"))["numbers"]
-    name = "front of soil with little damping over that of grains"
+    name = "front of soil that grows with the rate over that of grains"
     (row,) = [it for it in expected(folder) if it["name"] == name]
     assert abs(numbers[name] - row["value"]) < row["tolerance"]
-    usual = numbers["front of fallen soil"] / numbers["front of fallen grains"]
-    assert abs(usual - row["value"]) > row["tolerance"]  # the check that must fail
+    slow = numbers["front of fallen soil"] / numbers["front of fallen grains"]
+    assert slow - row["value"] > 2 * row["tolerance"]  # the check that must fail
