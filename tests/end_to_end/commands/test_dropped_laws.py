@@ -257,7 +257,7 @@ for scene in sys.argv[1:]:
 
 
 def checked(tree: Path, scenes: list[Path]) -> dict[str, tuple[int, str]]:
-    """Exit code of `check` of that tree, and what it says, for scenes in folders named by their keys; in one process."""
+    """Exit code of `check` of that tree, and what it says, by names of the scenes' folders; in one process."""
     ended = done([sys.executable, "-c", CHECKS, *scenes], cwd=tree, env={**os.environ, "PYTHONPATH": str(tree)})
     said, codes = ended.stdout.split("\0")[:-1:2], ended.stdout.split("\0")[1::2]
     return {it.name: (int(code), words) for it, code, words in zip(scenes, codes, said, strict=True)}
