@@ -1,7 +1,7 @@
 """What a scene is built into: a system that advances in time, and the parts that record it."""
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Cloud
@@ -45,7 +45,7 @@ class Assembly:
     """flow : what moves (`System`);  parts : what it consists of, in the order of their columns;  shown : that of them
     whose particles are seen;  repair : what helps when it is unstable."""
 
-    flow: Any
+    flow: System
     parts: list[Part]
     shown: Particles
     repair: str

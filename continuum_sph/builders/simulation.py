@@ -59,7 +59,8 @@ class Simulation(ShownSimulation):
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         made = assemble(scene)
-        self.flow, self.parts, self.shown, self.repair = made.flow, made.parts, made.shown, made.repair
+        self.flow: Any = made.flow  # a `System`, of which callers know the kind by their scene
+        self.parts, self.shown, self.repair = made.parts, made.shown, made.repair
         self._after()
 
     @property

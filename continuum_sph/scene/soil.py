@@ -11,6 +11,7 @@ from continuum_sph.scene.material_file import CONDUCTING, Origin
 from continuum_sph.scene.rate import RateSection
 from continuum_sph.scene.softening import SofteningSection
 from continuum_sph.scene.suction import SuctionSection
+from continuum_sph.scene.water import stacked_top
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
 from porescale.common.schema.names import name_faults
@@ -183,11 +184,7 @@ class SoilSection(Section):
     def surface_over(self, points: Floats, slack: float) -> Floats:
         """Height (m) of the surface of the ground that stands over each of ``points`` (n, 2) m without a gap wider than
         ``slack`` (m), (n,); that of the point where there is none."""
-        top, reaches = points[:, 1].copy(), [body.reach(points[:, 0]) for body in self.body]
-        for _ in reaches:  # in whatever order the pieces are given
-            for low, high in reaches:
-                top = np.where(low <= top + slack, np.maximum(top, high), top)
-        return top
+        return stacked_top(points[:, 1], [body.reach(points[:, 0]) for body in self.body], slack)
 
     def permeability_at(self, points: Floats) -> Floats:
         """k (n,) m/s of the ground at ``points`` (n, 2) m: of the last body that holds a point and has its own."""

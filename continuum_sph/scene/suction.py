@@ -42,10 +42,14 @@ class SuctionSection(Section):
             found.append(Fault("gravity", 0.0, "gives suction in metres of water no pressure", "m/s^2", "> 0"))
         elif scene.sound_speed == 0.0:
             found.append(Fault("water.sound_speed", None, "is needed when no reservoir has a level to take it from"))
-        for name, there in (("water.column", scene.water.column), ("probe", scene.probe), ("level", scene.level)):
+        for name, there, instead in (
+            ("water.column", scene.water.column, "use [[reservoir]] for open water"),
+            ("probe", scene.probe, "leave it out: snapshots have pore_pressure and saturation of every particle"),
+            ("level", scene.level, "leave it out: the series has the level of every reservoir"),
+        ):
             if there:
                 found.append(Fault(name, "given", "needs particles of water, which soil with suction has not",
-                                   repair="use [[reservoir]] for open water, or take out [soil.suction]"))  # fmt: skip
+                                   repair=f"{instead}, or take out [soil.suction]"))  # fmt: skip
         for name, there in (("air", scene.air), ("pile", scene.pile), ("inclusion", scene.inclusion)):
             if there is not None:
                 found.append(Fault(name, "given", "cannot be with soil.suction", repair="take out one of them"))

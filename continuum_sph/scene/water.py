@@ -1,11 +1,26 @@
 """The section of the water."""
 
+from collections.abc import Sequence
 from typing import Literal
 
+import numpy as np
 import pydantic
 
 from continuum_sph.scene.bounds import LARGEST, SMALLEST
+from porescale.common.core.types import Floats
 from porescale.common.schema.sections import Section, quantity
+
+
+def stacked_top(start: Floats, reaches: Sequence[tuple[Floats, Floats]], slack: float) -> Floats:
+    """Heights (n,) m from ``start`` (n,) up over pieces that stand on it or on each other without a gap wider than
+    ``slack`` (m);  reaches : lowest and highest points (n,) m of each, in any order, inf and -inf where it is not."""
+    top = start
+    while True:
+        before = top
+        for low, high in reaches:
+            top = np.where(low <= top + slack, np.maximum(top, high), top)
+        if np.array_equal(top, before):
+            return top
 
 
 class Column(Section):
@@ -15,6 +30,11 @@ class Column(Section):
     bottom: float = quantity("m", 0.0, ge=0, le=LARGEST, help="lower edge of the water")
     width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="width of the water")
     height: float = quantity("m", ge=SMALLEST, le=LARGEST, help="height of the water")
+
+    def reach(self, x: Floats) -> tuple[Floats, Floats]:
+        """Heights (m) of its lower and upper edge over each ``x`` (n,) m; inf and -inf where it is not."""
+        over = (x > self.left) & (x < self.left + self.width)
+        return np.where(over, self.bottom, np.inf), np.where(over, self.bottom + self.height, -np.inf)
 
 
 class WaterSection(Section):
@@ -36,3 +56,8 @@ class WaterSection(Section):
         default="none", description="whether the right face starts with a speed"
     )
     column: tuple[Column, ...] = pydantic.Field(default=(), description="rectangles of water")
+
+    def surface_over(self, points: Floats, start: Floats, slack: float) -> Floats:
+        """Height (n,) m of the surface of the water that stands over ``points`` (n, 2) m without a gap wider than
+        ``slack`` (m): from heights ``start`` (n,) m up."""
+        return stacked_top(start, [column.reach(points[:, 0]) for column in self.column], slack)

@@ -135,8 +135,9 @@ class Reservoir:
 
     left, right, bottom : m;  times (k,) s and levels (k,) m : straight lines between them, constant before and after;
     walls : whether each end lies at a wall of the tank;  let_in, let_out : mass recorded so far, kg/m;  level : of the
-    last step, m;  full : kg/m² of the strip to a metre of level;  strip : where it is weighed;  reach : the strip and
-    the ways on which water counts in part as passed on;  held : mass in the reach at the start, kg/m.
+    last step, m;  full : kg/m² of the strip to a metre of level;  strip : where it is weighed on the floor
+    of a tank, and see `strip_for`;  reach : the strip and the ways on which water counts in part as passed on;  held :
+    mass in the reach at the start, kg/m.
     """
 
     name: str
@@ -181,14 +182,13 @@ class Reservoir:
         """Effective width of the strip, ∫ w dx, m."""
         return self.right - self.left - 0.5 * sum(self.ramps)
 
-    def weigh_for(self, level: float) -> float:
-        """Lay the line above which water is weighed for a ``level`` (m); returns the height (m) from which that weight
-        counts."""
+    def strip_for(self, level: float) -> tuple[Strip, float]:
+        """The strip, with the line above which water is weighed for a ``level`` (m), and the height (m) from which that
+        weight counts."""
         if self.bottom <= 0.0:
-            return self.bottom
-        above = min(ABOVE * 2.0 * self.strip.half, 0.5 * max(0.0, level - self.bottom))
-        self.strip = self.strip._replace(line=self.bottom + above)
-        return self.strip.line
+            return self.strip, self.bottom
+        line = self.bottom + min(ABOVE * 2.0 * self.strip.half, 0.5 * max(0.0, level - self.bottom))
+        return self.strip._replace(line=line), line
 
     def wanted(self, time: float) -> float:
         """Level (m) at a ``time`` (s)."""
@@ -242,10 +242,10 @@ class Supply:
     def _level(self, pool: Reservoir, time: float) -> None:
         """Add or take particles until ``pool`` is within half a particle of its level."""
         layer, target, full = self.layer, pool.wanted(time), pool.full
-        line = pool.weigh_for(target)
+        strip, line = pool.strip_for(target)
         while True:
             held, highest = measure_strip(
-                layer.fluid, layer.x, layer.v, layer.mass, layer.material, pool.strip,
+                layer.fluid, layer.x, layer.v, layer.mass, layer.material, strip,
                 -1.0 if target <= pool.bottom else 0.5, pool.tops, pool.sinking,
             )  # fmt: skip
             over = held - full * (target - line)

@@ -34,9 +34,14 @@ from porescale.common.core.types import Floats
 
 PACE = 2.0
 """Smoothing length over the way on which an excess is taken up.  Of what passes under a sheet pile 5.2 % stays in the
-ground with 0, 0.7 % with 2 (12 rows, 12 to 60 s)."""
+ground with 0, 0.7 % with 2 (12 rows, 12 to 60 s).  Not derived: of the order of one, so that particles that are driven
+apart stay among the neighbours that drive them.  With 0, 1, 2 and 4, in a column that water sinks 0.22 m into (15 rows,
+0.6 s), the largest c left is 0.122, 0.100, 0.084 and 0.064, and the front is 3.5, 0.3, 0 and 0 mm short of that with
+2."""
 LET = 0.005
-"""Excess that is no sign of an error: sums over a square lattice are up to 1.0016."""
+"""Excess that is no sign of an error: c and its mean are two sums, over square lattices each up to 1.0016, so that
+0.0032 comes of the arrangement alone.  With half and twice of it that front is 0.3 mm deeper and 0.5 mm less deep, the
+largest c left 0.082 and 0.091."""
 BULK = 7  # column of the soil's volume with its pores
 STEPS = 200  # of the integrals of a kernel, which are right to 1e-5 with them
 

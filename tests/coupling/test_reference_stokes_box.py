@@ -49,12 +49,9 @@ def test_a_cylinder_towed_along_a_channel_is_held_as_by_faxen(k, exact):
 
 def test_two_discs_in_a_box_resist_reciprocally():
     pair = Enclosed(Box(2.0, 1.0), np.array([[-0.6, 0.1], [0.7, -0.2]]), np.array([0.3, 0.2]), 60, 240)
-    columns, slips = [], []
-    for unit in np.eye(6):
-        force, torque, slip = pair.loads(unit[:4].reshape(2, 2), unit[4:])
-        columns.append(np.concatenate([force.ravel(), torque]))
-        slips.append(slip)
-    matrix = np.array(columns)
+    found = pair.several([(unit[:4].reshape(2, 2), unit[4:]) for unit in np.eye(6)])
+    matrix = np.array([np.concatenate([force.ravel(), torque]) for force, torque, _ in found])
+    slips = [slip for *_, slip in found]
     # Lorentz 1896.  Loads err by the slip times the loads of a unit velocity.
     assert max(slips) < 1e-4
     assert np.abs(matrix - matrix.T).max() < max(slips) * np.abs(matrix).max()

@@ -30,7 +30,8 @@ def chosen(patterns: list[str], quick: bool) -> list[str]:
 
 def results(names: list[str], jobs: int, threads: list[int]) -> Iterator[tuple[str, dict[str, Any]]]:
     """Each name with what its processes found, by numbers of threads, in the order in which they end."""
-    preload()
+    if names:
+        preload()
     waiting, running = [(name, count) for name in names for count in threads], list[Child]()
     found: dict[str, dict[str, Any]] = {name: {} for name in names}
     with TemporaryDirectory() as folder:
@@ -67,14 +68,18 @@ def main() -> int:
     if asked.command == "compare" and known["processor"] not in (None, processor):
         print(f"warning: recorded on {known['processor']}, this is {processor}: last bits may differ", flush=True)
     bad, began = 0, time.perf_counter()
+    if asked.command == "compare":
+        new = [name for name in names if name not in known["fingerprints"]]
+        names, bad = [name for name in names if name not in new], len(new)
+        print(*(f"{name}: fails: not recorded\n" for name in new), sep="", end="", flush=True)
     for k, (name, found) in enumerate(results(names, asked.jobs, asked.threads), 1):
         if asked.command == "write":
             word = record.kept(name, found, processor, asked.record)
         else:
-            word = record.compared(known["fingerprints"].get(name), found)
+            word = record.compared(known["fingerprints"][name], found)
         bad += not word.startswith(("same", "written"))
         print(f"[{k}/{len(names)}] {name}: {word}", flush=True)
-    print(f"{len(names)} names, {bad} not as they should be, {time.perf_counter() - began:.0f} s", flush=True)
+    print(f"{len(names)} names made, {bad} not as they should be, {time.perf_counter() - began:.0f} s", flush=True)
     return 1 if bad else 0
 
 

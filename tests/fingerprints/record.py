@@ -59,13 +59,11 @@ def kept(name: str, found: dict[str, Any], processor: str, path: Path) -> str:
     return f"written: {first['steps']} steps, {times} s{alike}"
 
 
-def compared(known: dict[str, Any] | None, found: dict[str, Any]) -> str:
+def compared(known: dict[str, Any], found: dict[str, Any]) -> str:
     """Whether what was found of a name is what was recorded, and if not, in which parts it differs."""
     wrong = failure(found)
     if wrong:
         return wrong
-    if known is None:
-        return "fails: not recorded"
     off = [count for count, it in found.items() if it["hash"] != known.get(count)]
     if not off:
         return f"same ({sum(it['seconds'] for it in found.values()):.1f} s)"

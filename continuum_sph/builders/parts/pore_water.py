@@ -11,7 +11,7 @@ from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
 from continuum_sph.builders.parts.soil import porous_section, soil_flow, soil_section
-from continuum_sph.builders.parts.water import surface_over, wall_layers, water_law, water_particles, water_state
+from continuum_sph.builders.parts.water import wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
@@ -132,7 +132,7 @@ def pore_water(scene: Scene, soil: Floats) -> tuple[Floats, Floats]:
     if soil_section(scene).water_table is not None:
         under = pores[:, 1] < top
         pores, top = pores[under], top[under]
-    return pores, surface_over(scene, pores, top) - pores[:, 1]
+    return pores, scene.water.surface_over(pores, top, 0.5 * scene.numerics.spacing) - pores[:, 1]
 
 
 def head_on_lid(scene: Scene, count: int) -> float:
@@ -159,7 +159,9 @@ def saturate(scene: Scene, soil: Floats, x: Floats, v: Floats, rho: Floats) -> t
     if (table is not None or lid > 0.0) and scene.water.pressure == "hydrostatic":
         inside = np.any([body.holds(x) for body in soil_section(scene).body], axis=0)
         start = x[:, 1] if table is None else np.where(inside & (table > x[:, 1]), table, x[:, 1])
-        over, alone = surface_over(scene, x, start) + lid, surface_over(scene, x, x[:, 1])
+        slack = 0.5 * scene.numerics.spacing
+        over = scene.water.surface_over(x, start, slack) + lid
+        alone = scene.water.surface_over(x, x[:, 1], slack)
         rho = np.where(over > alone, water_state(scene).settled_density(over - x[:, 1], scene.gravity), rho)
     return np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores))), np.concatenate((rho, more))
 

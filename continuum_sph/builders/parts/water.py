@@ -226,16 +226,6 @@ def wall_layers(law: Law, spacing: float) -> int:
     return math.ceil(SUPPORT * law.smoothing.length / spacing - 0.5 - 1e-9)
 
 
-def surface_over(scene: Scene, x: Floats, start: Floats) -> Floats:
-    """Height (m) of the surface of the water that stands over ``x`` (n, 2) m without a gap, (n,): from heights
-    ``start`` (n,) up through every column of water that stands on what is below it."""
-    slack, top = 0.5 * scene.numerics.spacing, start.copy()
-    for column in sorted(scene.water.column, key=lambda it: it.bottom):
-        over = (x[:, 0] > column.left) & (x[:, 0] < column.left + column.width) & (column.bottom <= top + slack)
-        top = np.where(over, np.maximum(top, column.bottom + column.height), top)
-    return top
-
-
 def water_particles(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
     """Positions (n, 2) m, velocities (n, 2) m/s and densities (n,) kg/m³ of the water at the start."""
     water, spacing, tait = scene.water, scene.numerics.spacing, water_state(scene)
@@ -244,7 +234,7 @@ def water_particles(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
         corner = (column.left, column.bottom)
         x = square_lattice(corner, (column.left + column.width, column.bottom + column.height), spacing)
         top = column.bottom + column.height
-        depth = surface_over(scene, x, np.full(len(x), top)) - x[:, 1]
+        depth = water.surface_over(x, np.full(len(x), top), 0.5 * spacing) - x[:, 1]
         if water.pressure == "hydrostatic" or (water.pressure == "released" and scene.inclusion):
             rho = tait.settled_density(depth, scene.gravity)
         elif water.pressure == "released" and scene.inclusion is None:

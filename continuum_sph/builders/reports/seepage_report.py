@@ -19,13 +19,13 @@ from continuum_sph.builders.reports.soil_report import (
     report_rate,
     report_softening,
     report_watched,
+    warn_of_heavy_grains,
     warn_of_steep_faces,
 )
 from continuum_sph.builders.reports.time_report import MOVING_SOIL, OPENING, PORE_WATER, report_run, step_seconds
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.soil import SoilSection
 from continuum_sph.seepage.step import SHARE
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import RATIO
@@ -46,7 +46,6 @@ STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a 
 BROAD, APART = 6.0, 3.0  # spacings of open water in a strip that keeps its level, and from it to the ground
 PIECES = 100  # of a run, to add up what passes a face whose head rises
 STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
-HEAVIEST = 4000.0  # kg/m³, of grains: quartz has 2650, basalt 3000, garnet up to 4300
 
 
 def seepage_report(scene: Scene) -> Report:
@@ -172,16 +171,6 @@ def report_stiffness(out: Report, stiff: float, modulus: float, density: float) 
         out.warn(
             f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.0f} %; "
             f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
-        )
-
-
-def warn_of_heavy_grains(out: Report, section: SoilSection) -> None:
-    """A warning where density and porosity make grains heavier than minerals are: often it was given as theirs."""
-    grains = section.density / (1.0 - section.porosity)
-    if grains > HEAVIEST:
-        out.warn(
-            f"soil.density = {section.density:.4g} kg/m³ is of grains per whole volume, which at a porosity of "
-            f"{section.porosity:.3g} makes grains of {grains:.4g} kg/m³: (1 - n) times theirs is meant"
         )
 
 

@@ -24,6 +24,7 @@ BYTES = 900  # per particle: state, record, and about 27 partners in two lists
 STEEPEST, FEWEST = math.radians(75.0), 4
 """Steepest face on which cohesive ground without tension stood (10 and 20 rows, c = γH): of 80 degrees and more it fell
 within 4 s.  And rows of a face that is more than a step of particles."""
+HEAVIEST = 4000.0  # kg/m³, of grains: quartz has 2650, basalt 3000, garnet up to 4300
 SOFTEST = 1e-3
 """Strain under its own weight above which soil is so soft that its shape is not the scene's."""
 
@@ -76,6 +77,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
     report_run(out, scene, "soil with suction" if stages else "soil", count, steps, seconds)
     report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
+    warn_of_heavy_grains(out, section)
     if strain > 10.0 * SOFTEST:
         out.warn(f"the soil's weight strains it by {100.0 * strain:.3g} %: raise soil.stiffness")
     return out
@@ -194,6 +196,17 @@ def report_rate(out: Report, section: SoilSection, *, wet: bool) -> None:
     if wet:
         stokes = grains * rate.grain_diameter**2 * pace / VISCOSITY
         out.warn(f"[soil.rate] is of dry grains: in water, viscosity can brake them first (Stokes number {stokes:.2g})")
+
+
+def warn_of_heavy_grains(out: Report, section: SoilSection) -> None:
+    """A warning where density and porosity make grains heavier than minerals are: often it was given as theirs."""
+    grains = section.density / (1.0 - section.porosity)
+    if grains > HEAVIEST:
+        out.warn(
+            f"soil.density = {section.density:.4g} kg/m³ is of grains per whole volume, which at a porosity of "
+            f"{section.porosity:.3g} makes grains of {grains:.4g} kg/m³: "
+            "(1 - n) times theirs is meant, or a lower soil.porosity"
+        )
 
 
 def report_origin(out: Report, origin: Origin | None) -> None:

@@ -5,7 +5,7 @@ import math
 from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles
 from continuum_sph.builders.parts.suction import require_filled, retention_of, suction_section
-from continuum_sph.builders.reports.seepage_report import report_stiffness, warn_of_heavy_grains
+from continuum_sph.builders.reports.seepage_report import report_stiffness
 from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.unsaturated.richards import MOST_STAGES, SAFE
@@ -41,7 +41,6 @@ def suction_report(scene: Scene) -> Report:
     out.row("cohesion of half full pores at most", HALF * fringe * law.weight * math.tan(section.friction_angle), "Pa",
             "S_e psi tan phi")  # fmt: skip
     report_stiffness(out, law.stiffness, porosity * modulus, scene.water.density)
-    warn_of_heavy_grains(out, section)
     out.row("longest step for sound in soil that cannot drain", step, "s")
     out.row("stages of flow in a step", stages, "", f"of full pores; more than {MOST_STAGES} are several")
     if fringe < 2.0 * scene.numerics.spacing:

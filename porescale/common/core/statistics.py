@@ -4,7 +4,7 @@ independent."""
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -94,12 +94,18 @@ def jackknife(of: Callable[[list[int]], Floats], count: int) -> Floats:
 
 def needed(values: Sequence[float], width: float) -> float:
     """How many values of this deviation have an interval of ``width`` on each side; inf beyond a million."""
-    spread, count = deviation(values), LEAST
-    while student(count) * spread > width * math.sqrt(count):
-        count = max(count + 1, round(1.02 * count))
-        if count > 1e6:
-            return math.inf
-    return count
+    counts, half = _intervals()
+    short = half * deviation(values) > width * np.sqrt(counts)
+    return math.inf if short.all() else int(counts[int(np.argmin(short))])
+
+
+@cache
+def _intervals() -> tuple[Floats, Floats]:
+    """Counts (k,) 2 % apart, from LEAST to a million, and `student` of each."""
+    counts = [LEAST]
+    while (more := max(counts[-1] + 1, round(1.02 * counts[-1]))) <= 1e6:
+        counts.append(more)
+    return np.array(counts, float), np.array([student(count) for count in counts])
 
 
 @lru_cache(maxsize=4096)

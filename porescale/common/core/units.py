@@ -83,8 +83,7 @@ def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
 def _require_one_meaning(source: str, given: Any) -> None:
     """ValueError for units that Pint reads as something else than a laboratory means: to it a pixel is 1/96 inch, a
     point 1/72 inch, a ton 2000 pounds; and for those of logarithms, which it does not convert in decimals."""
-    registry = _registry()
-    for name in given._units:
+    for name in _names(given):
         if name.endswith(("pixel", "dot")):
             raise ValueError(f"{source!r} names a pixel, which has no length of its own; write that of one, in mm")
         if name.endswith(TYPE_SIZES):
@@ -92,7 +91,7 @@ def _require_one_meaning(source: str, given: Any) -> None:
         if name in ("ton", "force_ton"):
             metric = "t" if name == "ton" else "tf"
             raise ValueError(f"{source!r} could be 1000 kg or 2000 pounds; write {metric} for the first, kg or lb")
-        if registry._units[name].is_logarithmic:
+        if _is_logarithm(name):
             raise ValueError(f"{source!r} is of a logarithm; write the number itself")
 
 
@@ -107,7 +106,7 @@ def _require_same_count(source: str, given: Any, unit: str, wanted: Any) -> None
     if angle and not wants_angle:
         why = "60 rpm are 1 Hz" if rate else "of an angle of friction take the tangent"
         raise ValueError(f"{source!r} is of an angle, {shown} is not; {why}")
-    if wants_angle and not angle and not (rate and not any(name.endswith(CYCLES) for name in given._units)):
+    if wants_angle and not angle and not (rate and not any(name.endswith(CYCLES) for name in _names(given))):
         why = "1 Hz are 60 rpm, or 6.2832 rad/s" if rate else "a slope of 50 % is atan(0.5) = 26.57 degree"
         raise ValueError(f"{source!r} is not of an angle, {shown} is; {why}")
 
@@ -117,9 +116,23 @@ def _has_angle(unit: Any) -> bool:
     return "radian" in _roots(unit)
 
 
-def _roots(unit: Any) -> Any:
-    """The base units that a unit is made of, radian among them."""
-    return _registry().Quantity(Decimal(1), unit).to_root_units().units._units
+def _names(unit: Any) -> list[str]:
+    """The units that a unit is written in."""
+    return [name for name, _ in _registry().Quantity(Decimal(1), unit).unit_items()]
+
+
+def _is_logarithm(name: str) -> bool:
+    """Whether Pint takes a logarithm to convert a unit, which it can of floats alone, or a difference of such."""
+    try:
+        _registry().Quantity(Decimal(1), name.removeprefix("delta_")).to_root_units()
+    except TypeError:
+        return True
+    return False
+
+
+def _roots(unit: Any) -> dict[str, Decimal]:
+    """The base units that a unit is made of, radian among them, with their powers."""
+    return dict(_registry().Quantity(Decimal(1), unit).to_root_units().unit_items())
 
 
 def require_unit(unit: str) -> None:

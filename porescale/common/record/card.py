@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Collection, Mapping
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -87,13 +88,17 @@ def now() -> str:
 
 def versions() -> dict[str, str | None]:
     """Versions of what the numbers depend on."""
-    found: dict[str, str | None] = {"python": platform.python_version(), "porescale": VERSION}
-    for name in ("numpy", "numba", "llvmlite", "h5py", "scipy"):
-        try:
-            found[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
-            found[name] = None
-    return found
+    libraries = {name: _version(name) for name in ("numpy", "numba", "llvmlite", "h5py", "scipy")}
+    return {"python": platform.python_version(), "porescale": VERSION, **libraries}
+
+
+@cache
+def _version(name: str) -> str | None:
+    """That of an installed package, which a process imports once; None where there is none."""
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return None
 
 
 def commit() -> dict[str, Any] | None:

@@ -77,6 +77,7 @@ def test_texts_with_units_become_si(text: str, unit: str, value: float) -> None:
         ("1.6 ton/m^3", "kg/m^3", "could be 1000 kg or 2000 pounds; write t for the first"),
         ("2 ton_force/m^2", "Pa", "write tf for the first"),
         ("3 dB", "", "is of a logarithm"),
+        ("3 dBm/Hz", "J", "is of a logarithm"),
         ("1 parsnip", "m", "unknown unit 'parsnip'"),
         ("1", "m", "has no unit"),
         ("wide", "m", "is not a number with a unit"),

@@ -170,7 +170,11 @@ def test_the_energy_balance_of_water_among_grains_is_said_to_be_open():
     assert not any(told in it for it in report(validate(Scene, alone)).warnings)
 
 
-@pytest.mark.parametrize("pores", [{}, {"saturated": False, "suction": {"alpha": 5.0, "n": 3.0, "water_table": 0.2}}])
+@pytest.mark.parametrize(
+    "pores",
+    [{}, {"saturated": False, "suction": {"alpha": 5.0, "n": 3.0, "water_table": 0.2}}, {"saturated": False}],
+    ids=["full", "suction", "dry"],
+)
 def test_the_density_of_grains_in_place_of_that_of_soil_is_warned_of(pores):
     def said(density):
         soil = {"density": density, "porosity": 0.4} | pores

@@ -61,11 +61,11 @@ def found(rows, depth, *, bottom=0.5, weight=1.0):
     rows (k,): spacings over the bottom;  weight (k,): of a particle.
     """
     it = strip_at(bottom, bottom + depth * SPACING)
-    line = it.weigh_for(it.wanted(0.0))
+    strip, line = it.strip_for(it.wanted(0.0))
     x = np.column_stack((np.full(len(rows), 0.5 * SPACING), bottom + np.asarray(rows) * SPACING))
     mass = np.full(len(rows), 1000.0 * SPACING**2) * weight
     kind, still = np.zeros(len(rows), np.int64), np.zeros_like(x)
-    held, highest = measure_strip(len(rows), x, still, mass, kind, it.strip, 0.5, *np.zeros((2, 1)))
+    held, highest = measure_strip(len(rows), x, still, mass, kind, strip, 0.5, *np.zeros((2, 1)))
     assert highest == int(np.argmax(rows))
     return (line - bottom) / SPACING + held / (1000.0 * SPACING**2)
 

@@ -224,7 +224,7 @@ NAMES = {
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the package, its cases and their fingerprints, with a file more for each law and a case more."""
     root = tmp_path_factory.mktemp("tree")
-    shutil.copytree(ROOT / "porescale", root / "porescale", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(ROOT / "porescale", root / "porescale")  # with its bytecode
     for place, text in LAWS.items():
         (root / "porescale" / place).write_text(text, encoding="utf-8")
     for place in ("cases", "tests/fingerprints"):
@@ -245,14 +245,40 @@ def scene(folder: Path, text: str = SCENE, **names: str) -> Path:
     return folder
 
 
+CHECKS = """
+import sys
+from porescale.cli.main import commands
+from porescale.common.cli.application import main
+sys.stderr = sys.stdout
+for scene in sys.argv[1:]:
+    code = main(commands(), ["check", scene])
+    print("\\0", code, "\\0", sep="", end="")
+"""
+
+
+def checked(tree: Path, scenes: list[Path]) -> dict[str, tuple[int, str]]:
+    """Exit code of `check` of that tree, and what it says, by names of the scenes' folders; in one process."""
+    ended = done([sys.executable, "-c", CHECKS, *scenes], cwd=tree, env={**os.environ, "PYTHONPATH": str(tree)})
+    said, codes = ended.stdout.split("\0")[:-1:2], ended.stdout.split("\0")[1::2]
+    return {it.name: (int(code), words) for it, code, words in zip(scenes, codes, said, strict=True)}
+
+
+@pytest.fixture(scope="module")
+def answers(tree: Path, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, tuple[int, str]]]:
+    """What `check` says of scenes that name a law there is none of, by its key: that tree's, and ours."""
+    wrong = tmp_path_factory.mktemp("wrong")
+    scenes = [scene(wrong / key, DRY if key == "law" else SCENE, **{key: "nonsense"}) for key in NAMES]
+    return [checked(root, scenes) for root in (tree, ROOT)]
+
+
 @pytest.mark.parametrize("key", NAMES)
-def test_check_offers_a_law_that_was_dropped_into_its_folder(tree: Path, tmp_path: Path, key: str) -> None:
-    wrong = scene(tmp_path / "wrong", DRY if key == "law" else SCENE, **{key: "nonsense"})
-    found = porescale(tree, "check", wrong)
-    assert found.returncode == 2
-    assert NAMES[key] in found.stdout + found.stderr
-    ours = porescale(ROOT, "check", wrong)
-    assert NAMES[key] not in (ours.stdout + ours.stderr).replace(f'"{NAMES[key]}"', "")
+def test_check_offers_a_law_that_was_dropped_into_its_folder(
+    answers: list[dict[str, tuple[int, str]]], key: str
+) -> None:
+    (code, said), (_, ours) = (it[key] for it in answers)
+    assert code == 2
+    assert NAMES[key] in said
+    assert NAMES[key] not in ours.replace(f'"{NAMES[key]}"', "")
 
 
 def test_new_offers_them_too(tree: Path, tmp_path: Path) -> None:

@@ -68,23 +68,33 @@ class Enclosed:
 
     def loads(self, velocity, spin):
         """Force (n, 2), torque (n,) per mu on discs with velocity (n, 2) and spin (n,), and the slip left."""
-        n, velocity, spin = len(self.radii), np.asarray(velocity, float), np.asarray(spin, float)
+        return self.several([(velocity, spin)])[0]
+
+    def several(self, motions):
+        """`loads` of each of some motions (velocity, spin), all from one solution of the equations."""
+        n = len(self.radii)
         inside, lever = self.ring(self.inner, self.forces)
         sources = np.concatenate([inside, self.wall.points(self.wall_forces, True)])
+        lever = lever.reshape(n, self.forces, 2)
 
         def equations(times):
             disc, arm = self.ring(1.0, times * self.forces)
             wall = self.wall.points(times * self.wall_forces, False)
-            turn = np.repeat(spin, times * self.forces)[:, None] * arm
-            speed = np.repeat(velocity, times * self.forces, 0) + np.stack([-turn[:, 1], turn[:, 0]], -1)
-            speed = np.concatenate([speed, np.zeros_like(wall)])
-            return point_forces(np.concatenate([disc, wall]), sources) / (4 * np.pi), speed.T.ravel()
+            speeds = []
+            for velocity, spin in motions:
+                turn = np.repeat(np.asarray(spin, float), times * self.forces)[:, None] * arm
+                speed = np.repeat(np.asarray(velocity, float), times * self.forces, 0)
+                speed = np.concatenate([speed + np.stack([-turn[:, 1], turn[:, 0]], -1), np.zeros_like(wall)])
+                speeds.append(speed.T.ravel())
+            return point_forces(np.concatenate([disc, wall]), sources) / (4 * np.pi), np.stack(speeds, 1)
 
-        matrix, speed = equations(2)
-        push = np.linalg.lstsq(matrix, speed, rcond=1e-15)[0]
-        matrix, speed = equations(3)
-        slip = np.abs(matrix @ push - speed).max()
-        push = push.reshape(2, -1)[:, : n * self.forces].reshape(2, n, self.forces)
-        lever = lever.reshape(n, self.forces, 2)
-        torque = (lever[..., 0] * push[1] - lever[..., 1] * push[0]).sum(-1)
-        return -push.sum(-1).T, -torque, slip
+        matrix, speeds = equations(2)
+        pushes = np.linalg.lstsq(matrix, speeds, rcond=1e-15)[0]
+        matrix, speeds = equations(3)
+        slips = np.abs(matrix @ pushes - speeds).max(0)
+        found = []
+        for push, slip in zip(pushes.T, slips, strict=True):
+            push = push.reshape(2, -1)[:, : n * self.forces].reshape(2, n, self.forces)
+            torque = (lever[..., 0] * push[1] - lever[..., 1] * push[0]).sum(-1)
+            found.append((-push.sum(-1).T, -torque, slip))
+        return found

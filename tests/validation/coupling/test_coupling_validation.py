@@ -88,17 +88,18 @@ def test_a_disc_at_its_own_radius_bears_less():
 
 
 def test_forcing_outside_the_fluid_share_is_felt_by_a_disc_at_rest():
-    # 0.17 to 0.77 of rho g A that is not there
-    loads = {}
+    # 0.17 to 0.77 of rho g A that is not there.  The flow need not be steady, as both codes are asked at the same step;
+    # after a²/nu, 90 steps, the load that is not there is within 3 % of the last.
+    loads, steps = {}, 100
     for forcing in ("inside", "outside"):
         lattice = twin.SaturatedCells(18, 18, 0.8, force=(0.0, -1e-6), operator="odd-SC1", forcing=forcing)
         discs = [twin.Disc(9.3, 9.1, 3.0)]
         split = lattice.split(discs)
         lattice.split = lambda _, split=split: split  # it does not move
-        for _ in range(800):
+        for _ in range(steps):
             force, _ = lattice.step_with(discs)
         loads[forcing] = force[0, 1] / 1e-6
-    found, area = towed.weighing(0.8, cells=18, radius=3.0, steps=800, method=setups.Method("odd-SC1"))
+    found, area = towed.weighing(0.8, cells=18, radius=3.0, steps=steps, method=setups.Method("odd-SC1"))
     assert loads["inside"] == pytest.approx(found, rel=1e-6)  # the force of 1e-6 on whole populations: ten digits
     assert 0.17 < abs(loads["outside"] - found) / area < 0.77
 
