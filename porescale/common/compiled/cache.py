@@ -8,7 +8,6 @@ import time
 import warnings
 from collections.abc import Iterable
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 
 from porescale.common.core.errors import PorescaleWarning
@@ -33,13 +32,8 @@ def cache_root() -> Path:
 def hash_of(folders: Iterable[Path]) -> str:
     """Hash (12 hex digits) of every Python source in ``folders``: names, from each folder's own on, and contents.
 
-    The order of the folders counts; where they lie does not.  Read once in a process, which runs what it imported.
+    The order of the folders counts; where they lie does not.
     """
-    return _hash_of(tuple(folders))
-
-
-@cache
-def _hash_of(folders: tuple[Path, ...]) -> str:
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*.py")):

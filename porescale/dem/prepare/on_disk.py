@@ -1,6 +1,7 @@
 """Packings on disk, under a hash of all that made them."""
 
 import contextlib
+import functools
 import hashlib
 import io
 import json
@@ -43,8 +44,12 @@ def once(
     return made
 
 
+@functools.cache
 def sources() -> str:
-    """Hash (12 hex digits) of the sources a packing depends on: grains, particles and ground."""
+    """Hash (12 hex digits) of the sources a packing depends on: grains, particles and ground.
+
+    Read once in a process, which runs what it imported.
+    """
     root = Path(__file__).resolve().parents[2]
     return hash_of(root / room for room in ("dem", "common/neighbors", "common/core", "common/compiled"))
 
