@@ -71,5 +71,8 @@ def band_width(smoothing: Smoothing, spacing: float, averages: int = 1) -> float
 
 
 def averages_of(smoothing: Smoothing, spacing: float, width: float) -> int:
-    """How often to average for a band of a ``width`` (m): as often as it takes at most, once at least, MOST at most."""
-    return next((n - 1 for n in range(2, MOST + 1) if band_width(smoothing, spacing, n) > width), MOST)
+    """How often to average for a band of a ``width`` (m): until one more would make it too wide, from 1 to MOST."""
+    averages = 1
+    while averages < MOST and band_width(smoothing, spacing, averages + 1) <= width:
+        averages += 1
+    return averages

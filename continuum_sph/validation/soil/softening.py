@@ -148,7 +148,7 @@ def course(rows: int, pace: float = PACE, band: float | None = None) -> float:
 
 BRAKE = 0.055 * DENSITY * DEEP * math.sqrt(GRAVITY * DEEP) * PACE
 """Pa m: shear stress of damping between two rows that slip, over the spacing.  The factor is the sum over pairs of a
-square lattice, half of the slip in each row, h of 1.375 spacings."""
+square lattice, with the gradients that particles see of a step of velocity, h of 1.375 spacings."""
 
 
 @VALIDATIONS.row(

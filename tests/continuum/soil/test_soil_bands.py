@@ -7,6 +7,7 @@ import pytest
 
 from continuum_sph.soil import Material, Softening
 from continuum_sph.soil import flow as flow_module
+from continuum_sph.soil.momentum import SOFTENING
 from continuum_sph.soil.softening import MOST, average, averages_of, band_width
 from continuum_sph.soil.state import VOLUME
 from continuum_sph.validation.soil.setups import DENSITY, RATIO, body
@@ -155,16 +156,32 @@ def test_a_band_of_particles_is_as_wide_as_averages_can_make_it():
     assert averages_of(smoothing, SPACING, 100.0 * widths[-1]) == MOST
 
 
+def step_gradient(row, ratio):
+    """Gradient, over the slip a spacing, that particles of a row see of a slip between rows -1 and 0."""
+    crossed = whole = 0.0
+    for i in range(-4, 5):
+        for j in range(-4, 5):
+            if i or j:
+                slope = float(kernel_slope(1, math.hypot(i, j) / ratio, ratio))
+                crossed += slope * abs(j) * ((row + j < 0) != (row < 0))
+                whole += slope * j * j
+    return crossed / whole
+
+
+def test_particles_see_a_slip_as_a_gradient_of_two_rows_and_some_of_the_next():
+    found = [step_gradient(row, RATIO) for row in (-2, -1, 0, 1)]
+    assert found == pytest.approx([0.05, 0.45, 0.45, 0.05], abs=0.005)  # digits that the theory says
+    assert sum(found) == pytest.approx(1.0, abs=40 * EPS)  # none beyond: the kernel ends at 2.75 spacings
+
+
 def test_damping_bears_of_a_slip_what_the_row_says():
-    """Shear stress between two rows that slip past each other by 1 m/s, each with half of it a spacing as gradient."""
-    at = [(i, j) for i in range(-4, 5) for j in range(-4, 4)]
-    speed, gradient = (lambda j: 0.0 if j < 0 else 1.0), (lambda j: 0.5 if j in (-1, 0) else 0.0)
+    """Shear stress between two rows that slip past each other by 1 m/s, with the gradients that particles see of it."""
+    gradient = {row: step_gradient(row, RATIO) for row in range(-4, 4)}
     stress = 0.0
-    for i, j in at:
-        for k in range(-4, 4):
-            apart, r = j - k, math.hypot(i, j - k)
-            if k >= 0 or j < 0 or r >= SUPPORT * RATIO:
-                continue
-            left = speed(j) - speed(k) - 0.5 * (gradient(j) + gradient(k)) * apart
-            stress -= left * i * i * kernel_slope(1, r / RATIO, RATIO) / (r * r + 0.01 * RATIO**2)
-    assert pytest.approx(stress * DENSITY * math.sqrt(GRAVITY) * PACE, rel=0.1) == BRAKE
+    for i in range(-4, 5):
+        for above in range(4):
+            for below in range(-4, 0):
+                apart, r = above - below, math.hypot(i, above - below)
+                left = 1.0 - 0.5 * (gradient[above] + gradient[below]) * apart
+                stress -= left * i * i * float(kernel_slope(1, r / RATIO, RATIO)) / (r * r + SOFTENING * RATIO**2)
+    assert pytest.approx(stress * DENSITY * math.sqrt(GRAVITY) * PACE, rel=0.01) == BRAKE  # a factor of two digits
