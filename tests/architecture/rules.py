@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -191,11 +191,12 @@ def rule_4_no_circles(tree: Tree) -> Iterator[str]:
         yield f"circle of {len(group)}: {', '.join(group)}"
 
 
-def folder_sizes(tree: Tree) -> Counter[str]:
-    """Files in every folder, ``__init__`` not counted."""
-    return Counter(
-        source.path.rpartition("/")[0] for source in tree.modules if not source.path.endswith(("__init__.py",))
-    )
+def crowded(modules: Iterable[Source]) -> Iterator[str]:
+    """Folders of too many files, ``__init__`` not counted."""
+    folders = (source.path.rpartition("/")[0] for source in modules if not source.path.endswith("__init__.py"))
+    for folder, count in sorted(Counter(folders).items()):
+        if count > MOST_FILES:
+            yield f"{folder}: {count} files"
 
 
 def arguments(node: Function) -> int:
@@ -212,9 +213,7 @@ def lines(node: Function) -> int:
 
 def rule_5_nothing_too_large(tree: Tree) -> Iterator[str]:
     """At most 20 files a folder, 400 lines a file, 12 arguments and 80 lines a kernel, 8 arguments elsewhere."""
-    for folder, count in sorted(folder_sizes(tree).items()):
-        if count > MOST_FILES:
-            yield f"{folder}: {count} files"
+    yield from crowded(tree.modules)
     for source in tree.modules:
         count = len(source.text.splitlines())
         if count > MOST_LINES:

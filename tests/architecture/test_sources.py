@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from tests.architecture import rules
 from tests.architecture.sources import ROOT, Source, functions, is_kernel, read, sources, written
 
 LONGEST = 400
@@ -140,6 +141,13 @@ def test_scripts_of_cases_are(check: Callable[[Source], Iterator[str]]) -> None:
 @pytest.mark.parametrize("check", [too_long, skipped], ids=lambda check: check.__name__)
 def test_tests_are_not(check: Callable[[Source], Iterator[str]]) -> None:
     assert [fault for source in sources(folders=("tests", "cases")) for fault in check(source)] == []
+
+
+def test_no_folder_of_tests_or_cases_is_too_full() -> None:
+    assert list(rules.crowded(sources(folders=("tests", "cases")))) == []
+    full = [written(f"tests.one.file_{k}", "") for k in range(rules.MOST_FILES + 1)]
+    assert list(rules.crowded(full)) == [f"tests/one: {len(full)} files"]
+    assert list(rules.crowded(full[1:])) == []
 
 
 def test_there_is_something_to_check() -> None:

@@ -1,4 +1,4 @@
-"""A settled packing and grains placed by hand go together: what rested goes on resting."""
+"""A settled packing and grains placed by hand go together: what rested goes on resting; and a packing on a slope."""
 
 import re
 import tomllib
@@ -78,3 +78,16 @@ def test_the_template_with_its_grain_uncommented_is_checked_and_built(tmp_path: 
     # The gate is shut; at rest is a kinetic energy of 1e-8 m g d per grain, with g' = 0.6 g in water: at most
     # sqrt(2e-8 N g' d) in one of N = 150 grains, 1.3e-4 m/s, for 20 steps of 4e-5 s.
     assert np.abs(simulation.grains.discs.position - start)[:-1].max() < 1.3e-4 * 20 * 4e-5
+
+
+def test_a_packing_settles_under_what_of_gravity_points_down_and_is_let_go_under_all_of_it():
+    endless = {"domain__left": "periodic", "domain__right": "periodic", "grains__packing__settle": True}
+    endless |= {"grains__packing__left": 0.0, "grains__packing__width": 0.012}
+    level, tilted = (build(dry(**endless, gravity=given)) for given in ([0.0, -9.0], [6.0, -9.0]))
+    np.testing.assert_array_equal(tilted.motion()[0], level.motion()[0])
+    along = []
+    for it in (level, tilted):
+        it.advance(round(0.01 / it.step_seconds))
+        along.append(abs(it.masses @ it.motion()[1][:, 0] / it.masses.sum()))
+    # contact friction of 0.5 takes 4.5 of 6 m/s² on the flat floor at most; the twin, level, stays
+    assert along[1] > (6.0 - 4.5) * 0.01 > 10.0 * along[0]

@@ -11,6 +11,7 @@ from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
 from porescale.coupling.coverage import polygon as shapes
 from porescale.coupling.coverage.discs import cover
+from porescale.coupling.coverage.interpenetration import depth
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.coverage.rows import make_patches
 from porescale.coupling.divergence_check import _lightest
@@ -284,3 +285,22 @@ def test_a_run_that_went_wrong_knows_how_light_and_thin_its_polygons_are():
     ratio, across = _lightest(polygons_moving.immersed_polygons((40, 40), [plate], 0.4))
     assert ratio == pytest.approx(0.4, rel=1e-12)
     assert across == pytest.approx(3.0, rel=1e-12)
+
+
+SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+TURNED = (SQUARE - 0.5) @ np.array([(1.0, 1.0), (-1.0, 1.0)]) / np.sqrt(2.0)
+
+
+def test_the_depth_of_polygons_within_each_other_is_the_way_out():
+    assert depth(SQUARE, SQUARE + np.array((0.75, 0.0))) == pytest.approx(0.25, rel=1e-15)
+    assert depth(SQUARE, SQUARE + np.array((0.75, 0.9))) == pytest.approx(0.1, rel=1e-14)  # of 1.9 - 1, rounded at 2
+    assert depth(SQUARE, SQUARE) == pytest.approx(1.0)
+    assert depth(SQUARE, 0.2 * SQUARE + 0.4) == pytest.approx(0.6)  # wholly within: no corner meets a side
+    assert depth(SQUARE, np.array([(0.3, 0.5)])) == pytest.approx(0.3)
+
+
+def test_polygons_apart_have_no_depth():
+    assert depth(SQUARE, SQUARE + np.array((1.01, 0.0))) < 0.0
+    # A corner beside a corner: shadows on the first one's sides overlap, on the other's they do not.
+    assert depth(SQUARE, TURNED + np.array((1.4, 1.4))) < 0.0
+    assert depth(SQUARE, np.array([(1.1, 0.5)])) < 0.0

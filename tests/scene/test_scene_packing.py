@@ -16,7 +16,7 @@ from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.measures.porosity import porosity, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.prepare.compaction import mean_stress, write_packing
-from tests.reference.grading import percent_finer
+from tests.reference.dem.grading import percent_finer
 from tests.reference.scenes import dry, refusals, table
 
 CURVE = [[0.0003, 0.0], [0.0006, 40.0], [0.0009, 100.0]]

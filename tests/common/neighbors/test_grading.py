@@ -5,7 +5,7 @@ import pytest
 
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors.grading import graded_radii, lognormal_radii
-from tests.reference.grading import percent_finer
+from tests.reference.dem.grading import percent_finer
 
 CURVE = ((0.3e-3, 0.0), (0.6e-3, 20.0), (1.0e-3, 55.0), (1.5e-3, 55.0), (3.0e-3, 100.0))
 
