@@ -1,4 +1,4 @@
-"""What a biaxial test of a cell shows of its soil: strength, dilatancy, stiffness.
+"""What a biaxial test of a cell shows of its soil: strength and dilatancy.
 
 Axial strain a = -ε_yy and volume strain v = ε_xx + ε_yy, logarithmic, dilation positive; stresses are compression.
 
@@ -9,9 +9,6 @@ Peak: where the mean over all tests is largest, what each test has there; the la
 largest of its swings, which loose soil has, too.  Critical: the mean of the last third of a test, its dilatancy by one
 straight line: zero where volume no longer drifts.  How many independent values that mean has follows from their
 correlation over strain.
-
-Stiffness is that of the first loading to half of the largest deviator q = σ_yy - σ_xx, under constant σ_xx in plane
-strain: q = a E/(1 - ν²) and ε_xx = a ν/(1 - ν), both slopes by least squares through the origin (E50 of practice).
 """
 
 import math
@@ -27,8 +24,8 @@ WINDOW = 0.01
 """Of axial strain, over which peak and dilatancy are taken."""
 LATE = 2.0 / 3.0
 """Share of the strain from where on a test is in its critical state."""
-LEAST = 4
-"""Rows of the first loading, below which a slope cannot be separated from oscillations."""
+LEAST = 40
+"""Rows below which a series holds no test."""
 
 
 def running(strain: Floats, values: Floats) -> tuple[Floats, Floats]:
@@ -47,13 +44,13 @@ def running(strain: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 
 def curves(series: Mapping[str, Floats]) -> dict[str, Floats]:
-    """Axial strain, volume strain, sine of the mobilised angle, deviator (Pa), strain across, of every row of a test
+    """Axial strain, volume strain, sine of the mobilised angle, strain across, solid fraction, of every row of a test
     but the first, which comes before its first step."""
     across, axial = series["strain xx ()"][1:], -series["strain yy ()"][1:]
     side, along = series["stress xx (Pa)"][1:], series["stress yy (Pa)"][1:]
     return {
-        "strain": axial, "volume": across - axial, "sine": (along - side) / (along + side), "deviator": along - side,
-        "across": across, "fraction": series["solid fraction ()"][1:], "side": side,
+        "strain": axial, "volume": across - axial, "sine": (along - side) / (along + side),
+        "across": across, "fraction": series["solid fraction ()"][1:],
     }  # fmt: skip
 
 
@@ -63,7 +60,7 @@ def numbers(tests: Sequence[Mapping[str, Floats]]) -> list[dict[str, float]]:
     Raises InputError for a test without strength: one that ended before it began to shear.
     """
     every = [curves(series) for series in tests]
-    if any(len(it["strain"]) < 10 * LEAST or not it["strain"][-1] > 3.0 * WINDOW for it in every):
+    if any(len(it["strain"]) < LEAST or not it["strain"][-1] > 3.0 * WINDOW for it in every):
         raise InputError(Fault("series.csv", None, "holds no test", repair="remove that run folder"))
     sines, openings = peaks(every)
     return [
@@ -103,26 +100,10 @@ def _alone(it: Mapping[str, Floats]) -> dict[str, float]:
     late = it["strain"] > LATE * it["strain"][-1]
     a, sine = it["strain"][late], it["sine"][late]
     opening = max(float(np.polyfit(a, it["volume"][late], 1)[0]), -0.99)
-    stiffness, poisson = first_loading(it)
     return {
         "critical friction angle": math.asin(float(sine.mean())),
         "critical dilatancy angle": math.asin(opening / (2.0 + opening)),
         "independent critical values": independent(np.interp(np.linspace(a[0], a[-1], len(a)), a, sine)),
         "critical porosity": 1.0 - float(it["fraction"][late].mean()),
         "porosity after the test": 1.0 - float(it["fraction"][-1]),
-        "stiffness": stiffness,
-        "Poisson's ratio": poisson,
     }
-
-
-def first_loading(it: Mapping[str, Floats]) -> tuple[float, float]:
-    """E (Pa) and ν of the rows before half of the largest deviator; nan where they are too few."""
-    peak = float(np.nanmax(running(it["strain"], it["deviator"])[0]))
-    before = slice(0, int(np.argmax(it["deviator"] >= 0.5 * peak)))
-    a, q, across = (it[name][before] for name in ("strain", "deviator", "across"))
-    if len(a) < LEAST:
-        return math.nan, math.nan
-    squares = float(np.sum(a * a))
-    ratio = float(np.sum(a * across)) / squares
-    poisson = ratio / (1.0 + ratio)
-    return float(np.sum(a * q)) / squares * (1.0 - poisson**2), poisson

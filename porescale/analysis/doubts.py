@@ -39,7 +39,7 @@ def doubts(rows: Sequence[Mapping[str, float]], found: Mapping[str, Known]) -> l
         ratio = found["Poisson's ratio"].text()
         made.append(
             f"stiffness {found['stiffness'].text()} and Poisson's ratio {ratio} are not those "
-            "of an elastic soil: its first loading yields, and a continuum takes neither of them"
+            "of an elastic soil: contacts hardly hold the packing, and a continuum takes neither of them"
         )
     for name in HANDED_OVER:
         if name in found and found[name].interval > HALF * abs(found[name].mean):

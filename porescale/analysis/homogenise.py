@@ -88,9 +88,14 @@ def require_measurable(scene: Scene) -> None:
 
 def stiffness_over_pressure(scene: Scene) -> float:
     """Contact stiffness k (N/m a metre) over the pressure: E follows it, angles do not where it is large."""
+    return law_of(scene).stiffness / pressure_of(scene)
+
+
+def law_of(scene: Scene) -> Linear:
+    """The contact law of the packing's grains with each other."""
     law = MaterialPlan.of(scene).law_and_others(packing_of(scene).material, mean_mass(scene))[0]
     assert isinstance(law, Linear)  # as `require_measurable` holds
-    return law.stiffness / pressure_of(scene)
+    return law
 
 
 def lambda_error(scene: Scene) -> float:
@@ -100,7 +105,7 @@ def lambda_error(scene: Scene) -> float:
 
 
 def ramp_of(section: Homogenise, packing: Packing) -> float:
-    """Rate times the time in which a test comes to it: slowly enough for the stiffness of its first loading.
+    """Rate times the time in which a test comes to it: slowly enough for stress to be even while contacts are loaded.
 
     A wave takes L √(ρ/k) through a cell of height L; a rate that grows evenly over T has strained it by p/k after
     √(2 T p/(rate k)), which WAVES of them make  rate T = WAVES² I² ρ L²/2m,  whatever k and p are.

@@ -90,7 +90,7 @@ def known(rows: Sequence[Mapping[str, float]], ratio_error: float = 0.0) -> dict
 
 
 def elastic(found: Mapping[str, Known]) -> bool:
-    """Whether the first loading is that of an elastic soil, which a continuum can take over."""
+    """Whether the contacts make an elastic soil, which a continuum can take over."""
     both = "stiffness" in found and "Poisson's ratio" in found
     return both and found["stiffness"].mean > 0.0 and 0.0 <= found["Poisson's ratio"].mean < SOLIDEST
 

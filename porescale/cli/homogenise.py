@@ -22,6 +22,7 @@ from porescale.common.core.version import VERSION
 if TYPE_CHECKING:
     from porescale.analysis.material import Known
     from porescale.builders.scene import Scene as Tables
+    from porescale.common.core.types import Floats
     from porescale.common.studies.runner import Campaign, Ended
 
 SPECIMEN, PORES = "specimen.toml", "permeability.json"
@@ -151,15 +152,32 @@ def _more(found: Mapping[str, Known], name: str, small: float) -> int:
 
 
 def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str, float]]:
-    """All numbers of the finished specimens: of their tests, and of the flow through them where lambda is stated."""
+    """All numbers of the finished specimens: of their tests and contacts, and of the flow through them where lambda is
+    stated."""
     from porescale.analysis.biaxial import numbers
+    from porescale.analysis.homogenise import law_of
     from porescale.common.record.series import read_series
+    from porescale.dem.measures.network import elasticity
 
-    made = numbers([read_series(ended.folder / "series.csv") for ended in ends])
+    tests = numbers([read_series(ended.folder / "series.csv") for ended in ends])
+    made = []
+    for test, ended in zip(tests, ends, strict=True):
+        stiffness, poisson = elasticity(*_packed(ended.folder), law_of(scene))
+        made.append(test | {"stiffness": stiffness, "Poisson's ratio": poisson})
     ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
     if ratio is None:
         return made
     return [row | _pores(ended.folder, ratio, cells) for row, ended in zip(made, ends, strict=True)]
+
+
+def _packed(folder: Path) -> tuple[Floats, Floats, tuple[float, float]]:
+    """Positions (n, 2) m, radii (n,) m and cell (width, height) m of a specimen before its test."""
+    from porescale.common.record.open_run import open_run
+
+    run = open_run(folder)
+    box = run.card["scene"]["domain"]
+    grains = run.snapshot(0).clouds["grains"]
+    return grains.position, grains.data["radius"], (float(box["width"]), float(box["height"]))
 
 
 def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
@@ -178,10 +196,9 @@ def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
             return {str(name): float(value) for name, value in known["numbers"].items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         pass  # not there, torn or of another question: measured anew
-    run = open_run(folder)
-    width, height = float(run.card["scene"]["domain"]["width"]), float(run.card["scene"]["domain"]["height"])
-    grains, sheared = run.snapshot(0).clouds["grains"], run.snapshot(-1).clouds["grains"]
-    made = flow_numbers(grains.position, ratio * grains.data["radius"], (width, height), cells)
+    position, radius, (width, height) = _packed(folder)
+    sheared = open_run(folder).snapshot(-1).clouds["grains"]
+    made = flow_numbers(position, ratio * radius, (width, height), cells)
     strain = {axis: float(read_series(folder / "series.csv")[f"strain {axis} ()"][-1]) for axis in ("xx", "yy")}
     box = width * math.exp(strain["xx"]), height * math.exp(strain["yy"])
     made |= sheared_numbers(sheared.position, ratio * sheared.data["radius"], box, cells)

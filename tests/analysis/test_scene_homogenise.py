@@ -42,8 +42,8 @@ def test_a_known_soil_is_found():
     assert VALIDATIONS["scene.biaxial_test_of_a_known_soil"].run().passed
 
 
-def test_soil_of_another_poisson_ratio_is_told_apart():  # the twin that must fail
-    found = verify.known_numbers(verify.known_test(poisson=0.25))
+def test_soil_of_another_strength_is_told_apart():  # the twin that must fail
+    found = verify.known_numbers(verify.known_test(friction=1.01 * verify.FRICTION))
     assert max(abs(value - 1.0) for value in found) > 1e9 * tolerance("scene.biaxial_test_of_a_known_soil")
 
 
@@ -79,6 +79,13 @@ def test_a_run_that_never_sheared_is_no_test():
     series = {name: values[:20] for name, values in verify.known_test().items()}
     with pytest.raises(InputError, match="holds no test"):
         numbers([series])
+
+
+def test_a_packing_whose_sides_stand_is_as_stiff_as_its_contacts_and_without_springs_across_it_is_not():
+    row = VALIDATIONS["scene.stiffness_of_a_packing_whose_sides_stand"].run()
+    assert row.passed, row
+    strained, springs = verify.confined(1, slides=False)
+    assert abs(springs[1] / strained[1] - 1.0) > 2 * row.tolerance
 
 
 def test_flow_through_a_square_array_is_what_its_drag_says():

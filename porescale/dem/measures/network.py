@@ -1,11 +1,15 @@
-"""A bonded sample as what it is before anything slides or breaks: rigid bodies joined by springs, solved as statics.
+"""A sample or packing before anything slides or breaks: rigid bodies joined by springs, solved as statics.
 
-Each bond is two springs where its bodies touch, k along the normal and k_t across, between the points of both bodies
-there.  One plate is displaced, the other held, and the bodies between come to rest: a sparse linear system, without
-time.  The stiffness of a sample follows, to compare with what a loaded one shows, and with Voigt's bound: all bodies
-displaced as one straining sheet, none turned.
+Each bond or contact is two springs where its bodies touch, k along the normal and k_t across, between the points of
+both bodies there; resistance to rolling is a third, R times the rotation of one against the other, R the reduced
+radius.  Of a bonded sample one plate is displaced, the other held; a packing in a periodic cell is strained as a whole.
+The bodies between come to rest: a sparse linear system, without time.  The stiffness of a sample follows, to compare
+with what a loaded one shows, and with Voigt's bound: all bodies displaced as one straining sheet, none turned.  Of a
+packing the elastic moduli follow; the forces that its contacts bear change them by the order of overlap over diameter,
+which is left out.
 
-Sources: Cundall & Strack 1979 (contact as two springs);  bound: Chang et al. 1990, J. Eng. Mech. 116, 1077.
+Sources: Cundall & Strack 1979 (contact as two springs);  bound: Chang et al. 1990, J. Eng. Mech. 116, 1077;  moduli of
+packings as those of their springs: Agnolin & Roux 2007, Phys. Rev. E 76, 061304.
 """
 
 from typing import NamedTuple
@@ -14,11 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import spsolve
+from scipy.spatial import KDTree
 
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.contact.linear import Linear
 from porescale.dem.forces.bonds import touched
+from porescale.dem.measures.contact_list import nearest_image
 from porescale.dem.prepare.rock import Rock
 
 LOOSE = 1e-9  # of a contact's stiffness: ties of bodies that nothing, or but one bond, holds
@@ -51,7 +57,8 @@ def network(rock: Rock) -> Network:
     point = d.position[one] + arm[:, None] * normal
     row = np.where(clumps.group >= 0, clumps.group, clumps.count + np.arange(d.count))
     place = np.concatenate((clumps.position, d.position))
-    rows = [_springs(point, along, row[one], row[other], place) for along in (normal, across)]
+    both = row[one], row[other]
+    rows = [_springs((point - place[both[0]], point - place[both[1]]), along, both) for along in (normal, across)]
     weight = np.rint(back / (law.stiffness * (d.radius[one] + d.radius[other] - distance)))  # of corners, see segments
     spring = np.concatenate((law.stiffness * weight, law.tangential_stiffness * (weight > 0.0)))
     return Network(_stacked(rows, len(ends), 3 * len(place)), spring, place, (clumps.count - 2, clumps.count - 1))
@@ -90,20 +97,71 @@ def voigt(rock: Rock) -> float:
     return (cost[1] - sloped**2 / (4.0 * curved)) / (0.5 * rock.length * rock.height)
 
 
+def moduli(position: Floats, radius: Floats, box: tuple[float, float], law: Linear) -> Floats:
+    """Elastic moduli (3, 3), Pa: stresses xx, yy, xy over the strains xx, yy and the shear 2 xy of a packing.
+
+    position (n, 2) m, radius (n,) m: discs of one material in a periodic cell;  box : its width and height, m.  All
+    contacts stick; discs that nothing holds bear nothing.
+    """
+    pairs = KDTree(position % box, boxsize=box).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
+    pairs = pairs[np.lexsort(pairs.T[::-1])]  # the order of sums, and with it the last digits, is then that of discs
+    way = nearest_image(position[pairs[:, 1]] - position[pairs[:, 0]], (*box, 0.0))
+    distance = np.hypot(*way.T)
+    near = distance < radius[pairs].sum(axis=1)
+    (one, other), way, distance = pairs[near].T, way[near], distance[near]
+    normal = way / distance[:, None]
+    across = np.column_stack((-normal[:, 1], normal[:, 0]))
+    first = 0.5 * (distance + (radius[one] ** 2 - radius[other] ** 2) / distance)
+    arms = first[:, None] * normal, (first - distance)[:, None] * normal
+    rows = [_springs(arms, along, (one, other)) for along in (normal, across)]
+    reduced = radius[one] * radius[other] / (radius[one] + radius[other])
+    rows.append(_rolling(reduced, (one, other)))
+    stretch = _stacked(rows, len(one), 3 * len(position))
+    slides, rolls = law.friction > 0.0, law.rolling_friction > 0.0
+    each = law.stiffness, law.tangential_stiffness * slides, law.rolling_stiffness * rolls
+    spring = np.repeat(each, len(one))
+    strained = np.zeros((len(spring), 3))
+    for k, strain in enumerate((((1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((0.0, 0.5), (0.5, 0.0)))):
+        apart = -way @ np.array(strain)
+        strained[: 2 * len(one), k] = np.concatenate([np.sum(along * apart, axis=1) for along in (normal, across)])
+    size = np.tile((1.0, 1.0, float(np.mean(radius)) ** 2), len(position))
+    matrix = stretch.T @ diags_array(spring) @ stretch + diags_array(LOOSE * law.stiffness * size)
+    moved = spsolve(matrix.tocsc(), -(stretch.T @ (spring[:, None] * strained)))
+    made: Floats = strained.T @ (spring[:, None] * (strained + stretch @ moved)) / (box[0] * box[1])
+    return made
+
+
+def elasticity(position: Floats, radius: Floats, box: tuple[float, float], law: Linear) -> tuple[float, float]:
+    """E (Pa) and Poisson's ratio, in plane strain, of a packing as in `moduli`, their mean over all directions."""
+    made = moduli(position, radius, box, law)
+    bulk = 0.25 * (made[0, 0] + made[1, 1] + 2.0 * made[0, 1])
+    shear = 0.125 * (made[0, 0] + made[1, 1] - 2.0 * made[0, 1]) + 0.5 * made[2, 2]
+    poisson = 0.5 * (bulk - shear) / bulk
+    return float(2.0 * shear * (1.0 + poisson)), float(poisson)
+
+
 def _energy(net: Network, moved: Floats) -> float:
     """Energy (J/m) in the springs for displacements (3 b,)."""
     return 0.5 * float(net.spring @ (net.stretch @ moved) ** 2)
 
 
-def _springs(point: Floats, way: Floats, one: NDArray[np.int64], other: NDArray[np.int64], place: Floats) -> Floats:
-    """Entries (6 m, 3), spring, column and value, of springs along ``way`` (m, 2) at ``point`` (m, 2) m."""
-    count, found = len(point), []
-    for body, sign in ((one, 1.0), (other, -1.0)):
-        arm = point - place[body]
+def _springs(arms: tuple[Floats, Floats], way: Floats, ends: tuple[NDArray[np.int64], NDArray[np.int64]]) -> Floats:
+    """Entries (6 m, 3), spring, column and value, of springs along ``way`` (m, 2) between the bodies ``ends``, at the
+    points that lie off their centroids by ``arms`` (m, 2) m."""
+    count, found = len(way), []
+    for body, arm, sign in zip(ends, arms, (1.0, -1.0), strict=True):
         turn = arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]
         for axis, value in enumerate((way[:, 0], way[:, 1], turn)):
             found.append(np.column_stack((np.arange(count), 3 * body + axis, sign * value)))
     return np.concatenate(found)
+
+
+def _rolling(reduced: Floats, ends: tuple[NDArray[np.int64], NDArray[np.int64]]) -> Floats:
+    """The same (2 m, 3) of what resists rolling, at the ``reduced`` radius (m,) m."""
+    count = np.arange(len(reduced))
+    return np.concatenate(
+        [np.column_stack((count, 3 * body + 2, sign * reduced)) for body, sign in zip(ends, (1.0, -1.0), strict=True)]
+    )
 
 
 def _stacked(rows: list[Floats], each: int, columns: int) -> csr_array:
