@@ -113,6 +113,13 @@ def the_next_test_finds_the_process_as_it_was() -> Iterator[None]:
 
 
 @pytest.fixture
+def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs in this process end without pictures and films, which take longer than small runs do; with their tables."""
+    monkeypatch.setattr("porescale.common.pictures.film.painted", lambda folder, look: [])
+    monkeypatch.setattr("porescale.common.pictures.picture.paint_last", lambda folder, name, look: Path(folder))
+
+
+@pytest.fixture
 def toy(tmp_path: Path, monkeypatch, capsys) -> Callable[..., tuple[int, str, list[str]]]:
     """Runs a command line in an empty folder; gives exit code, stdout, stderr lines."""
     from porescale.common.cli.application import application, main

@@ -272,7 +272,8 @@ def test_a_void_ratio_that_is_missed_around_what_stands_there_is_said() -> None:
 
 
 def test_a_packing_of_two_materials_rests_on_a_disc_of_the_walls() -> None:
-    materials = [{"name": "sand", "friction": 0.3}, {"name": "steel", "stiffness": 1e6, "friction": 0.2}]
+    steel = {"name": "steel", "stiffness": 1e6, "friction": 0.2}  # sand rolls as in other tests with two materials
+    materials = [{"name": "sand", "friction": 0.3, "rolling_friction": 0.1, "rolling_stiffness": 1e4}, steel]
     scene = bed(disc=[DISC], material=materials, contact__wall_material="steel")
     simulation = build(scene)
     assert simulation.grains

@@ -79,7 +79,8 @@ def test_exact_walls_give_the_cpus_bits(dtype, force, sides):
     [(solid, weight) for solid in SOLID_OPERATORS if solid != "exact-wall" for weight in fitting_weights(solid)],
 )
 def test_every_operator_and_weight_is_the_cpus(solid, weight):
-    assert both_same(solid_operator=solid, weighting=weight, force=NO_FORCE if weight == "B1" else FORCE)
+    undriven = (solid, weight) == ("odd-SC1", "B2")  # with discs in undriven fluid: test_coupling_push.py
+    assert both_same(solid_operator=solid, weighting=weight, force=NO_FORCE if undriven else FORCE)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

@@ -26,6 +26,8 @@ ELSEWHERE = "name another folder, or remove what is there"
 """What helps where runs are in the way."""
 SELDOM = 5.0
 """Files of a sweep are written again after so many times what writing them took."""
+TAKES = 1.0
+"""Seconds for which writing them is reckoned with before it was done: little more than their picture takes."""
 
 
 def run_points(
@@ -47,16 +49,17 @@ def run_points(
     ends: list[Ended] = []
     order = {point.name: at for at, point in enumerate(points)}
     tables = lru_cache(TABLES)(run_table)
-    before, took = 0.0, 0.0
+    before, took, written = 0.0, TAKES, 0
 
     def write() -> None:
         """Write the files of what has ended so far."""
-        nonlocal before, took
+        nonlocal before, took, written
         begun = time.monotonic()
         ends.sort(key=lambda one: order[one.point.name])
         sweep_files.write(campaign.folder, command, ends, rows or columns_at_end(ends), tables, points)
         before = time.monotonic()
-        took = before - begun
+        if ends:
+            took, written = before - begun, len(ends)
 
     for point in points:  # another's runs are found before anything is written beside them
         campaign.before(point)
@@ -67,7 +70,8 @@ def run_points(
             if time.monotonic() - before > SELDOM * took:
                 write()
     finally:
-        write()
+        if len(ends) > written:
+            write()
     return ends
 
 

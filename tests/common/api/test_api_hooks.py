@@ -26,13 +26,6 @@ KINDS = ("coupled", "dry", "tank", "soil", "levee")
 STRENGTH = 0.3
 
 
-@pytest.fixture
-def without_pictures(monkeypatch):
-    """Runs end without pictures and films, which take longer than they do."""
-    for program in ("porescale.program", "continuum_sph.program"):
-        monkeypatch.setattr(f"{program}.show", lambda folder: [])
-
-
 def pushed(scene, strength=STRENGTH, end=None):
     """A simulation whose particles are pushed to the left by a force that changes in time and place."""
     sim = build(scene)

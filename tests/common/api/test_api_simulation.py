@@ -122,7 +122,7 @@ def test_where_the_corners_of_polygons_are_had_is_said_where_there_are_no_grains
     np.testing.assert_allclose(np.ptp(corners, axis=0), 1e-3, rtol=1e-9)  # as they are given, to round-off of places
 
 
-def test_a_run_from_python_is_that_of_the_command(tmp_path):
+def test_a_run_from_python_is_that_of_the_command(tmp_path, request):
     scene = write(tmp_path / "scene.toml", table(COLUMN, time__end=END))
     assert main(commands(), ["run", str(scene), "--out", str(tmp_path / "typed"), "--quiet", "--threads", "1"]) == 0
     run = porescale.run(porescale.load(scene), tmp_path / "called", progress=False)
@@ -131,10 +131,12 @@ def test_a_run_from_python_is_that_of_the_command(tmp_path):
     assert {it.name for it in (tmp_path / "typed").iterdir()} == {it.name for it in (tmp_path / "called").iterdir()}
     one = porescale.build(porescale.load(scene)).run()
     assert fingerprint(one.state())[0] == fingerprint(porescale.build(porescale.load(scene)).run(until=END).state())[0]
+    request.getfixturevalue("without_pictures")  # the two above have the same, by their names
     other = porescale.run(porescale.load(scene, settings=["contact.friction=0.4"]), tmp_path / "other", progress=False)
     assert differences(tmp_path / "typed", other.folder)  # it can tell
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_a_folder_that_is_in_use_is_named_as_python_has_it(tmp_path):
     scene = tank(time__end=0.002)
     continuum_sph.run(scene, tmp_path / "one", progress=False)
@@ -153,6 +155,7 @@ def test_a_folder_that_is_in_use_is_named_as_python_has_it(tmp_path):
     assert "no longer at time 0" in refusals(lambda: continuum_sph.run(moved, tmp_path / "two"))[0]
 
 
+@pytest.mark.usefixtures("without_pictures")
 @pytest.mark.parametrize("kind", ["tank", "dry"])
 def test_a_scene_made_in_python_is_gone_on_with(kind, tmp_path, monkeypatch):
     package = porescale if kind == "dry" else continuum_sph

@@ -12,7 +12,7 @@ import pytest
 from porescale.common.cli.sweep import check_points, expected
 from porescale.common.core.errors import InputError
 from porescale.common.record.series import run_table
-from porescale.common.studies import sweep_files
+from porescale.common.studies import sweep, sweep_files
 from porescale.common.studies.parameter_table import Point, crossed, named, read_points, varied
 from porescale.common.studies.runner import Campaign, Ended
 from porescale.common.studies.schedulers.local import Local
@@ -197,6 +197,19 @@ def test_an_exception_among_points_stops_the_rest(tmp_path):
     with pytest.raises(OSError, match="gone"):
         list(campaign(tmp_path, broken).all(varied(["a=1,2,3,4,5,6,7,8,9"]), 1, print))
     assert len(called) == 1
+
+
+@pytest.mark.parametrize(("seldom", "written"), [(1e9, [0, 3]), (0.0, [0, 1, 2, 3])])
+def test_files_of_a_sweep_that_is_soon_over_are_written_at_its_end_alone(tmp_path, monkeypatch, seldom, written):
+    """The check that fails: where they may be written as often as points end they are, and not once more at the end."""
+    counts: list[int] = []
+    monkeypatch.setattr(sweep, "SELDOM", seldom)
+    monkeypatch.setattr(sweep_files, "write", lambda folder, command, ends, *more: counts.append(len(ends)))
+    points = varied(["decay.rate=1,2,3"])
+    rows = [{"column": "left (m)", "at": "end"}]
+    ends = sweep.run_points(campaign(tmp_path, Machine()), points, 1, rows, "toy sweep", lambda text: None)
+    assert [ended.outcome for ended in ends] == ["finished"] * 3
+    assert counts == written
 
 
 def test_the_table_holds_what_was_set_what_it_cost_and_what_came_out(tmp_path):

@@ -18,6 +18,8 @@ from porescale.common.studies.quantities import Columns, measured
 from porescale.output.case import expected
 from tests.reference.folders import CASES
 
+pytestmark = pytest.mark.usefixtures("without_pictures")
+
 FILES = sorted(path for path in CASES.glob("*/expected.toml") if (path.parent / "scene.toml").exists())
 """Of cases that are scenes; those that are scripts have test_dem_cases.py."""
 KEYS = {"name", "column", "at", "value", "tolerance", "unit", "because"}
@@ -140,7 +142,7 @@ def test_numbers_are_read_from_the_series_as_stated():
 
 
 FEW = "output.snapshot_interval=0.45"
-"""Few frames: pictures take longer than the steps of a small case."""
+"""Few snapshots, which nobody looks at."""
 
 
 @pytest.mark.parametrize("quality", [pytest.param("standard", marks=pytest.mark.slow), "draft"])

@@ -14,6 +14,8 @@ from porescale import open_run
 from tests.reference.folders import CASES
 from tests.reference.own_laws import write_laws
 
+pytestmark = pytest.mark.usefixtures("without_pictures")
+
 LAW = """
 import porescale as ps
 

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from porescale import build, load, open_run
 from porescale.common.record.checkpoint import read_checkpoint
@@ -97,6 +98,7 @@ def test_killed_five_times_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_p
     assert {path.name for path in out.iterdir()} == names
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_two_threads_give_the_bits_of_one(folder, scene, porescale, tmp_path):
     out = tmp_path / "two"
     assert porescale("run", scene, "--out", out, "--quiet", "--threads", 2) == 0
@@ -104,6 +106,7 @@ def test_two_threads_give_the_bits_of_one(folder, scene, porescale, tmp_path):
     assert differences(folder, out) == []
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_a_state_that_differs_in_one_bit_ends_differently(folder, scene, porescale, tmp_path, monkeypatch):
     # The twin that must fail: the comparison sees a run whose first grain starts one rounding error to the right.
     import porescale.builders.initial.grains as module

@@ -155,6 +155,7 @@ def test_the_checkpoint_is_the_state_of_the_simulation_at_its_end(folder, scene)
     assert simulation.series() == {name: column[-1] for name, column in open_run(folder).series.items()}
 
 
+@pytest.mark.usefixtures("without_pictures")
 @pytest.mark.slow
 def test_recording_more_often_does_not_change_the_run(folder, scene, porescale, tmp_path):
     often = tmp_path / "often"
@@ -166,6 +167,7 @@ def test_recording_more_often_does_not_change_the_run(folder, scene, porescale, 
     assert one.series["front (m)"].tobytes() == other.series["front (m)"][::10].tobytes()
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_another_viscosity_is_another_run(folder, scene, porescale, tmp_path):
     # The twin: a change of the scene's physics in its tenth digit shows in rows, state and every snapshot.
     other = tmp_path / "other"
