@@ -51,7 +51,7 @@ def run_until(flow: Flow, time: float) -> Flow:
     return flow
 
 
-def open_box(across: int, seed: int, *, alpha: float = 0.05, xsph: float = 0.0) -> Flow:
+def open_box(across: int, seed: int) -> Flow:
     """A periodic box of 1 m of disordered liquid stirred at random, without walls or gravity."""
     spacing, density = 1.0 / across, 1000.0
     rng = np.random.default_rng(seed)
@@ -60,7 +60,7 @@ def open_box(across: int, seed: int, *, alpha: float = 0.05, xsph: float = 0.0) 
     v = rng.normal(0.0, 0.5, x.shape)
     smoothing = Smoothing("wendland", RATIO * spacing)
     fluid = Fluid(Tait(density, 20.0), 1.0)
-    law = Law(smoothing, spacing, (fluid,), (0.0, 0.0), alpha=alpha, beta=0.1, xsph=xsph, cut=False)
+    law = Law(smoothing, spacing, (fluid,), (0.0, 0.0), alpha=0.05, beta=0.1, xsph=0.0, cut=False)
     layer = Layer(len(x), x, v, np.full(len(x), density * spacing**2), np.full(len(x), density))
     pairs = PairList(len(x), 0.25 * smoothing.length, (0.0, 0.0), (1.0, 1.0), (True, True), full=True)
     flow = Flow(layer, law, pairs)

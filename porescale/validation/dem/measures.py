@@ -119,10 +119,10 @@ def heap(seed: int = 2) -> Grains:
     return grains
 
 
-def heap_fields(grains: Grains, cells: float, width: float = 0.03, *, conserve: bool = False) -> CoarseGrained:
+def heap_fields(grains: Grains, cells: float, width: float = 0.03) -> CoarseGrained:
     """Fields of a heap at ``cells`` cells a ``width`` (m), on a raster that reaches a width beyond all of it."""
     raster = Raster.over((-width, -width), (0.2 + width, 0.3), width / cells, width)
-    return CoarseGrained(raster, grains.discs, contacts(grains), conserve=conserve)
+    return CoarseGrained(raster, grains.discs, contacts(grains), conserve=False)
 
 
 def totals(grains: Grains, *, conserve: bool = True) -> Floats:
