@@ -3,6 +3,7 @@
 import numpy as np
 
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
@@ -12,7 +13,6 @@ from continuum_sph.water.step import Flow
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList, square_lattice
-from porescale.common.schema.sections import validate
 
 
 def column_scene(
@@ -27,21 +27,12 @@ def column_scene(
     **numerics: float | str,
 ) -> Scene:
     """A tank (width, height) with one column (width, height) of water in its left corner; lengths in m."""
-    return validate(
-        Scene,
-        {
-            "gravity": gravity,
-            "tank": {"width": tank[0], "height": tank[1]},
-            "water": {
-                "viscosity": viscosity,
-                "pressure": pressure,
-                "column": [{"width": column[0], "height": column[1]}],
-            },
-            "numerics": {"spacing": spacing, **numerics},
-            "time": {"end": end},
-            "output": {"snapshot_interval": end, "series_interval": end},
-        },
-    )
+    water = {
+        "viscosity": viscosity,
+        "pressure": pressure,
+        "column": [{"width": column[0], "height": column[1]}],
+    }
+    return tank_scene(*tank, spacing, end, gravity=gravity, water=water, numerics=numerics)
 
 
 def run_until(flow: Flow, time: float) -> Flow:

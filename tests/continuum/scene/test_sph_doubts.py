@@ -9,9 +9,9 @@ from continuum_sph.builders.reports.time_report import PORE_WATER, step_seconds
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.look import look_of_scene
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.duration.expected import STEPS
 from porescale.common.schema.sections import scene_as_dict, validate
-from tests.reference.continuum.tanks import tank_scene
 
 WIDE = [[0, 0], [1, 0], [1, 0.4], [0, 0.4]]
 SMALL = [[0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]]

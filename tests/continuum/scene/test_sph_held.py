@@ -12,8 +12,8 @@ from continuum_sph.builders.reports.time_report import OPENING, PORE_WATER, step
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.seepage.skeleton import Frame
 from continuum_sph.soil import SoilFlow
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import tank_scene
 from tests.reference.same_run import leaves
 
 BODY = {"outline": [[0.4, 0], [0.8, 0], [0.8, 0.4], [0.4, 0.4]]}

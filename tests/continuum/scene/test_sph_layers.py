@@ -7,9 +7,9 @@ from continuum_sph.builders.parts.pore_water import pore_law
 from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
+from continuum_sph.validation.tanks import tank_scene
 from continuum_sph.water.smoothing import kernel_value
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import tank_scene
 
 K, RATIO, FALL = 1e-3, 0.1, 0.2  # m/s; of the other piece; of the head, m
 WIDE, HIGH, ROWS = 0.5, 0.4, 8

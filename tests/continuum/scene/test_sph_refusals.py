@@ -7,9 +7,9 @@ from continuum_sph import build, check
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
-from tests.reference.continuum.tanks import tank_scene
 
 BLOCK = [[0.3, 0], [0.6, 0], [0.6, 0.4], [0.3, 0.4]]
 FLAT = [[0.7, 0], [0.9, 0], [0.9, 0.02], [0.7, 0.02]]  # lower than the middle of the lowest row

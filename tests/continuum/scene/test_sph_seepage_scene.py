@@ -12,10 +12,10 @@ from continuum_sph.cli import PACKAGE
 from continuum_sph.seepage import Seepage
 from continuum_sph.soil.stress import YY
 from continuum_sph.validation.seepage.saturated_box import saturated_box
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import tank_scene
 from tests.reference.same_run import leaves
 
 OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]

@@ -5,7 +5,7 @@ import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.soil.stress import YY
-from tests.reference.continuum.tanks import tank_scene
+from continuum_sph.validation.tanks import tank_scene
 
 WIDE, GROUND, LEVEL, SPACING = 0.6, 0.5, 0.9, 0.05  # m
 SOIL = {"density": 1500.0, "porosity": 0.4, "body": [{"outline": [[0, 0], [WIDE, 0], [WIDE, GROUND], [0, GROUND]]}]}

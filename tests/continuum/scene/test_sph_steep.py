@@ -5,7 +5,7 @@ import pytest
 
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
-from tests.reference.continuum.tanks import tank_scene
+from continuum_sph.validation.tanks import tank_scene
 
 DENSITY, HIGH, TOE, BACK = 1600.0, 1.0, 0.3, 1.2  # kg/m³; of the face, of the ground before it and behind it, m
 WEIGHT = DENSITY * 9.81 * HIGH

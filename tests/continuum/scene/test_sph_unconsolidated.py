@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import level_ground, tank_scene
 from tests.reference.same_run import leaves
 
 HIGH, WIDE, ROWS = 0.4, 0.25, 8

@@ -8,8 +8,8 @@ from continuum_sph.builders.parts.soil import SoilPart
 from continuum_sph.builders.parts.watched import WatchedPart
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import tank_scene
 
 UPPER = [[0.2, 0.2], [0.4, 0.2], [0.4, 0.4], [0.2, 0.4]]
 BODY = {"outline": [[0, 0], [0.4, 0], [0.4, 0.4], [0, 0.4]]}

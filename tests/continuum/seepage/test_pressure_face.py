@@ -5,8 +5,8 @@ import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.seepage.pressure_face import UNSEEN, prescribe_pressure
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.state import P, X, Y
-from tests.reference.continuum.tanks import level_ground, tank_scene
 
 SPACING, SIDE = 0.05, 0.5
 GONE = 0.15  # spacings that water has gone out of the face; what stands behind it goes half as far

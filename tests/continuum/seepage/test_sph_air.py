@@ -9,6 +9,7 @@ from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.validation.seepage.air import TrappedAir
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.eos.adiabatic import AdiabaticGas
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.eos.printed import PrintedGas
@@ -17,7 +18,6 @@ from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import level_ground, tank_scene
 
 
 def scene(**changes):

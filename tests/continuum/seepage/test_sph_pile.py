@@ -20,10 +20,10 @@ from continuum_sph.seepage.sheet_pile import (
     keep_out,
     side_of,
 )
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import PairList, square_lattice
-from tests.reference.continuum.tanks import level_ground, tank_scene
 
 SPACING = 0.1
 

@@ -10,11 +10,11 @@ from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.seepage import reservoir
+from continuum_sph.validation.tanks import tank_scene
 from continuum_sph.water.smoothing import RATIO
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import square_lattice
-from tests.reference.continuum.tanks import tank_scene
 
 SPACING, ROUND = 0.1, 2.3e-16
 

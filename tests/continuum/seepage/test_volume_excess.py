@@ -18,10 +18,10 @@ from continuum_sph.seepage.volume_excess import (
     room_before,
     take_up,
 )
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.smoothing import SUPPORT
 from continuum_sph.water.state import DIFFUSIVE, VOLUME, P
 from tests.reference.continuum import seepage as slow
-from tests.reference.continuum.tanks import level_ground, tank_scene
 
 eps = np.finfo(float).eps
 H, PERIOD = 0.13, np.array([1.0, 1.0])

@@ -11,8 +11,8 @@ from continuum_sph.builders.report import report
 from continuum_sph.soil import Material, Rate
 from continuum_sph.soil.material import RATE_PACE, RATE_STRENGTH
 from continuum_sph.soil.plasticity import new_stress
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import level_ground, tank_scene
 from tests.reference.folders import CASES
 
 FAST = Rate(sin_friction=0.8, inertial_number=0.3, grain_diameter=1e-3)

@@ -12,8 +12,8 @@ from continuum_sph.soil import Material, Rate, Softening
 from continuum_sph.soil.material import RATE_STRENGTH, SOFTENED_STRAIN
 from continuum_sph.soil.plasticity import new_stress, strength
 from continuum_sph.soil.softening import band_width
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import level_ground, tank_scene
 
 FIRM = {"sin_friction": 0.5, "cohesion_intercept": 800.0, "sin_dilatancy": 0.2, "tension": 1000.0}
 SOFT = Softening(0.3, 200.0, 0.05)

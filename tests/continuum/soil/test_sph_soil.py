@@ -24,6 +24,7 @@ from continuum_sph.soil.stress import XX, YY, Straining, deform
 from continuum_sph.soil.tension import repel_under_tension
 from continuum_sph.validation.soil.element import Element
 from continuum_sph.validation.soil.setups import body, in_tank
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water import bundles, smoothing
 from continuum_sph.water.bundles import Neighbours
 from continuum_sph.water.kernel_correction import inverse
@@ -33,7 +34,6 @@ from porescale.common.neighbors import square_lattice
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 from porescale.common.record.model import Model
 from porescale.common.schema.sections import validate
-from tests.reference.continuum.tanks import level_ground, tank_scene
 from tests.reference.continuum.uncompiled import uncompile
 from tests.reference.memory import growth
 

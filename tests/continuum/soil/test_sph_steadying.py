@@ -10,7 +10,7 @@ import pytest
 from continuum_sph.builders.parts.soil import soil_law
 from continuum_sph.soil import Material
 from continuum_sph.soil.steadying import MOST, WEIGHTLESS, steadied
-from tests.reference.continuum.tanks import level_ground, tank_scene
+from continuum_sph.validation.tanks import level_ground, tank_scene
 
 SAND = Material(1e6, 1600.0)
 EPS = 2.0**-52

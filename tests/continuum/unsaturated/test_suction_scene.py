@@ -12,9 +12,9 @@ from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.stress import YY
 from continuum_sph.unsaturated.pore_stress import borne
 from continuum_sph.unsaturated.richards import CONTENT, EFFECTIVE, HEAD, PRESSURE
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from tests.reference.continuum.tanks import level_ground, tank_scene
 from tests.reference.same_run import leaves
 
 OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
 from porescale.common.evidence.overhead import bytes_of
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
-from tests.reference.continuum.tanks import tank_scene
 
 SHIFTED = {"numerics": {"spacing": 0.1, "gradient": "corrected", "shifting": 2.0}}
 PULLED = {
