@@ -12,10 +12,8 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import elastic_pairs
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
-from porescale.dem.motion.periodic_cell import LOAD, Straining
 from porescale.validation.dem.momentum import momentum_drift
 from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at, slowest_wave, weights
 
@@ -65,17 +63,6 @@ def clumped_cell(law: Linear, seed: int, side: int = 6) -> Grains:
     return grains
 
 
-def energy_of_bodies(grains: Grains) -> float:
-    """Kinetic energy relative to a strained cell, J/m: clumps by their own motion, not by that of their members."""
-    d, clumps = grains.discs, grains.steering.clumps
-    free = clumps.group < 0
-    parts = (
-        (d.mass[free], d.velocity[free], d.inertia[free], d.spin[free]),
-        (clumps.mass, clumps.velocity, clumps.inertia, clumps.spin),
-    )
-    return 0.5 * float(sum(m @ np.sum(v**2, axis=1) + i @ w**2 for m, v, i, w in parts))
-
-
 def clumped_cloud(seed: int = 1, friction: float = 0.5) -> Grains:
     """60 discs, two in three of them bound in overlapping pairs, thrown at each other and spinning, in free space."""
     rng = np.random.default_rng(seed)
@@ -92,16 +79,6 @@ def clumped_cloud(seed: int = 1, friction: float = 0.5) -> Grains:
     discs.spin[:] = rng.normal(0.0, 100.0, 60)
     grains.steering.bind([[k, 40 + k] for k in range(20)], DENSITY)
     return grains
-
-
-def stored(grains: Grains) -> float:
-    """Elastic energy of a strained cell now, J/m."""
-    (width, _), (tilt, height) = grains.steering.edges()
-    now = Straining(width, height, tilt, 0.0, 0.0, 0.0, np.zeros(LOAD))
-    d, material = grains.discs, grains.material
-    grains.current_pairs()
-    parts = elastic_pairs(d.position, d.radius, material, grains.pair_arrays(), grains.contact, now)
-    return float(sum(parts))
 
 
 def dumbbell_bounce(
