@@ -61,8 +61,6 @@ def element(material: Material = SAND) -> tuple[float, float]:
     return along / beside, -(upright + across)
 
 
-LATE = math.exp(-1.5 * PRESSED / STRAIN)
-"""Of the difference of strengths that is left at PRESSED at most: γ is over 1.5 times the upright strain."""
 LAG = 2.0 * PRESSED / STEPS * (TAN_PHI - LOOSE) / STRAIN
 """By how much sin φ is ahead of itself for a step, whose γ is twice its upright strain, at the start."""
 
