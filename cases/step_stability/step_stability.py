@@ -27,7 +27,7 @@ def lagged(ratio: Floats | float) -> Floats:
 
 def growth(ratio: float, step: float, steps: int = 60) -> float:
     """Factor per step by which a small disturbance of a disc pressed on a floor grows, ``step`` in sqrt(m/k)."""
-    grains = setups.row_on_floor(1, -0.1 * setups.RADIUS, setups.law_at(ratio))
+    grains = setups.on_floor(setups.law_at(ratio), -0.1 * setups.RADIUS)
     load = np.array([[0.0, -0.1 * setups.RADIUS * setups.STIFFNESS]])
     d = grains.discs
     rest = d.position.copy()
@@ -51,7 +51,7 @@ def gains(share: float, ratio: float = 0.0) -> Floats:
     speed = 1.0
     law = setups.law_at(ratio)
     gap = speed * dt * (np.arange(PHASES) + 0.5) / PHASES
-    grains = setups.row_on_floor(PHASES, gap, law)
+    grains = setups.on_floor(law, gap)
     grains.discs.velocity[:, 1] = -speed
     grains.step(dt, count=int(6.0 * UNIT / dt) + 4)
     found: Floats = (grains.discs.velocity[:, 1] / speed) ** 2 - 1.0

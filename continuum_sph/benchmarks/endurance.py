@@ -7,31 +7,23 @@ import numpy as np
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.validation.water.setups import open_box
 from continuum_sph.water.step import Flow
 from porescale.common.evidence.endurance import Endurance, Endurances, Held
-from porescale.common.schema.sections import validate
 
 EPS = float(np.finfo(float).eps)
 SPACING = 0.05  # m
 DEPTH = 1.0  # m
 Table = dict[str, Any]
 
-OUTPUT: Table = {"snapshot_interval": 1.0, "series_interval": 1.0}
-NUMERICS: Table = {"spacing": SPACING, "artificial_viscosity": 0.1, "gradient": "corrected"}
-GROUND: Table = {
-    "stiffness": 2e6, "friction_angle": "30 degree",
-    "body": [{"outline": [[0, 0], [0.5, 0], [0.5, 1], [0, 1]]}],
-}  # fmt: skip
+NUMERICS: Table = {"artificial_viscosity": 0.1, "gradient": "corrected"}
+GROUND: Table = {"stiffness": 2e6, "friction_angle": "30 degree", "body": [level_ground(0.5, 1.0)]}
 
 
 def tank(**sections: Any) -> Scene:
     """A tank of 0.5 x 1.2 m, open at the top."""
-    table: Table = {
-        "tank": {"width": 0.5, "height": 1.2, "lid": False}, "numerics": NUMERICS, "time": {"end": 1e9},
-        "output": OUTPUT,
-    }  # fmt: skip
-    return validate(Scene, table | sections)
+    return tank_scene(0.5, 1.2, SPACING, 1e9, every=1.0, lid=False, **{"numerics": NUMERICS} | sections)
 
 
 def still(**numerics: Any) -> Scene:
@@ -48,7 +40,7 @@ def sloshing() -> Scene:
 
 def ground() -> Scene:
     """200 particles of level ground with the stress of their weight."""
-    return tank(soil=GROUND, numerics={"spacing": SPACING})
+    return tank(soil=GROUND, numerics={})
 
 
 def wet_ground() -> Scene:
@@ -57,11 +49,10 @@ def wet_ground() -> Scene:
     The square lattice of water in the open stands with `continuum_sph.water.smoothing.RATIO`: sheared, its sums of V W
     grow.  With 1.3 spacings they shrink by 0.09 %, and it gives way after some 400 000 steps.
     """
-    soil = GROUND | {"permeability": 1e-3, "body": [{"outline": [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]]}]}
+    soil = GROUND | {"permeability": 1e-3, "body": [level_ground(0.5, 0.5)]}
     water = {"column": [{"width": 0.5, "height": 0.8}], "sound_speed": 80.0}
     read = {"probe": [{"x": 0.25, "y": 0.25}], "level": [{"x": 0.25}]}
-    numerics = {"spacing": SPACING, "artificial_viscosity": 0.1}
-    return tank(soil=soil, water=water, numerics=numerics, **read)
+    return tank(soil=soil, water=water, numerics={"artificial_viscosity": 0.1}, **read)
 
 
 class Tank:

@@ -7,15 +7,14 @@ from typing import Any
 from continuum_sph.benchmarks.minimal_sph import PlainColumn
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
-from porescale.common.schema.sections import validate
 
 SPACING = 1.0 / 32.0  # m: 2048 particles of water
 WARM = 200
 """Steps before timing: water in motion."""
 Table = dict[str, Any]
 
-NUMERICS: Table = {"spacing": SPACING}
 COLUMN: Table = {"width": 1.0, "height": 2.0}
 PLAIN, SMOOTHED = "water only", "water with XSPH"
 SOIL, SOAKED = "soil", "soil and water"
@@ -23,12 +22,8 @@ SOIL, SOAKED = "soil", "soil and water"
 
 def scene(numerics: Table | None = None, tank: Table | None = None, **more: Any) -> Scene:
     """A column in a closed tank."""
-    table: Table = {
-        "tank": {"width": 4.0, "height": 3.0} | (tank or {}), "water": {"column": [COLUMN]},
-        "numerics": NUMERICS | (numerics or {}), "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
-    }  # fmt: skip
-    return validate(Scene, table | more)
+    given: Table = {"tank": {"width": 4.0, "height": 3.0} | (tank or {}), "water": {"column": [COLUMN]}}
+    return tank_scene(4.0, 3.0, SPACING, numerics=numerics, **given | more)
 
 
 def parts_of(it: Scene) -> list[str]:
@@ -76,14 +71,9 @@ def alone(**more: Any) -> BuiltScene:
 
 def ground(soil: Table | None = None, **more: Any) -> Scene:
     """Soil at rest in a tank, of the size of the column of water."""
-    body = {"outline": [[0, 0], [1, 0], [1, 2], [0, 2]]}
-    table: Table = {
-        "tank": {"width": 1.0, "height": 2.5, "lid": False},
-        "soil": {"density": 1590.0, "porosity": 0.4, "stiffness": 2e6, "permeability": 0.01, "stress": "geostatic",
-                 "sides": "slip", "body": [body]} | (soil or {}),
-        "numerics": NUMERICS, "time": {"end": 1.0}, "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
-    }  # fmt: skip
-    return validate(Scene, table | more)
+    own = {"density": 1590.0, "porosity": 0.4, "stiffness": 2e6, "permeability": 0.01, "stress": "geostatic",
+           "sides": "slip", "body": [level_ground(1.0, 2.0)]} | (soil or {})  # fmt: skip
+    return tank_scene(1.0, 2.5, SPACING, lid=False, **{"soil": own} | more)
 
 
 def settled(it: Scene) -> tuple[Simulation, int]:

@@ -9,19 +9,19 @@ from numpy.typing import NDArray
 
 from porescale.common.core.types import Floats
 
+TERMS = 400
+"""Of the series, whose rest is 2 H/(π² TERMS) at most."""
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 
 
-def released_pressure(
-    x: Floats, y: Floats, width: float, height: float, density: float, gravity: float, terms: int = 400
-) -> Floats:
+def released_pressure(x: Floats, y: Floats, width: float, height: float, density: float, gravity: float) -> Floats:
     """Pressure (Pa) in a column of incompressible water the instant its right face is set free.
 
     ∇²p = 0 with p = 0 on the top y = H and the face x = a, ∂p/∂x = 0 on the wall x = 0, ∂p/∂y = -ρg on the floor.
     With p = ρg{(H - y) - φ}: φ = Σ 2/(H k²) cos(k y) cosh(k x)/cosh(k a), k = (n + 1/2)π/H.
     """
     head = height - y
-    for n in range(terms):
+    for n in range(TERMS):
         k = (n + 0.5) * np.pi / height
         # cosh(kx)/cosh(ka) without overflow
         ratio = np.exp(k * (x - width)) * (1.0 + np.exp(-2.0 * k * x)) / (1.0 + np.exp(-2.0 * k * width))

@@ -89,15 +89,15 @@ class PressureFace:
         way[:, 1 - axis] = np.interp(at[:, axis], home[first, axis], gone, left=0.0, right=0.0)
         return way
 
-    def hydrostatic(self, x: Floats, level: float, weight: float, offset: float = 0.0) -> None:
+    def hydrostatic(self, x: Floats, level: float, weight: float) -> None:
         """Set the pressure of water that stands to ``level`` (m) over it; none above.
 
-        x (n, 2) m: of all particles;  weight ρ g, N/m³;  offset: added, Pa.
+        x (n, 2) m: of all particles;  weight ρ g, N/m³.
         """
         at = x[self.columns]
         depth = (at - np.array(self.point)) @ np.array(self.normal)
         foot = at[:, :, 1] - depth * self.normal[1]
-        self.pressure[:] = weight * np.maximum(0.0, level - foot) + offset
+        self.pressure[:] = weight * np.maximum(0.0, level - foot)
 
 
 def in_columns(rows: NDArray[np.int64], x: Floats, normal: tuple[float, float]) -> NDArray[np.int64]:

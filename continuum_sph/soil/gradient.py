@@ -17,24 +17,12 @@ import numpy as np
 
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, VX, VY, X, Y
 from continuum_sph.water.bundles import image, inverse_period, nearest_image, row
+from continuum_sph.water.kernel_correction import inverse
 from continuum_sph.water.smoothing import slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_rows, reduce_add, sqrt, zeros
 
 NONE, FULL = 0.25, 0.45
-
-
-@inline
-def inverse(xx, xy, yy):
-    """xx, xy, yy of K for moments M of such components, and the share of the unit tensor in it."""
-    half = 0.5 * (xx + yy)
-    least = half - np.sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy)
-    share = min(1.0, max(0.0, (least - NONE) / (FULL - NONE)))
-    if share == 0.0:
-        return 1.0, 0.0, 1.0, 1.0
-    whole = share / (xx * yy - xy * xy)
-    rest = 1.0 - share
-    return whole * yy + rest, -whole * xy, whole * xx + rest, rest
 
 
 @inline
@@ -61,7 +49,7 @@ def velocity_gradients(soil, record, facing, matrix, near, corrected, step):
         kyy = 1.0
         rest = 0.0
         if corrected:
-            kxx, kxy, kyy, rest = inverse(mxx, mxy, myy)
+            kxx, kxy, kyy, rest = inverse(mxx, mxy, myy, NONE, FULL)
         trace = mxx + myy
         part = rest / trace if trace > 0.0 else 0.0
         turn = part * (gyx - gxy)

@@ -39,16 +39,16 @@ CLUMP = 0.2
 
 @inline
 def inverse(xx, xy, yy, none, full):
-    """xx, xy, yy of L for a moment tensor M of such components, which goes over to the unit tensor as its smaller
-    eigenvalue falls from ``full`` to ``none``."""
+    """xx, xy, yy of L for a moment tensor M of such components, and the share of the unit tensor in it, to which it
+    goes over as the smaller eigenvalue of M falls from ``full`` to ``none``."""
     half = 0.5 * (xx + yy)
     least = half - np.sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy)
     share = min(1.0, max(0.0, (least - none) / (full - none)))
     if share == 0.0:
-        return 1.0, 0.0, 1.0
+        return 1.0, 0.0, 1.0, 1.0
     whole = share / (xx * yy - xy * xy)
     rest = 1.0 - share
-    return whole * yy + rest, -whole * xy, whole * xx + rest
+    return whole * yy + rest, -whole * xy, whole * xx + rest, rest
 
 
 @inline
@@ -88,7 +88,7 @@ def neighbourhood_moments(fluid, record, near, properties, matrix, concentration
         bounds = SPRAY if enclosed is None or not enclosed[i] else WALLED
         store_density_gradient(density, i, chosen(properties, own, m), b, bounds)
         xx, xy, yy, cx, cy = wall_moments(i, record, near, m, c, whole)
-        lxx, lxy, lyy = inverse(xx, xy, yy, NONE, FULL)
+        lxx, lxy, lyy, _ = inverse(xx, xy, yy, NONE, FULL)
         matrix[i, 0] = lxx
         matrix[i, 1] = lxy
         matrix[i, 2] = lyy
@@ -174,7 +174,7 @@ def store_density_gradient(density, i, m, b, bounds):
     """Overwrites row i of ``density`` (fluid, 2) kg/m⁴, unless it is None, with the sums ``b`` corrected by M, within
     ``bounds`` of its smaller eigenvalue."""
     if density is not None:
-        lxx, lxy, lyy = inverse(m[0], m[1], m[2], bounds[0], bounds[1])
+        lxx, lxy, lyy, _ = inverse(m[0], m[1], m[2], bounds[0], bounds[1])
         density[i, 0] = lxx * b[0] + lxy * b[1]
         density[i, 1] = lxy * b[0] + lyy * b[1]
 

@@ -11,7 +11,7 @@ from porescale.builders.initial.frames import placed_frames
 from porescale.builders.initial.placed import controls_by_hand
 from porescale.builders.report import report
 from porescale.common.core.errors import InputError
-from tests.reference.scenes import column, dry, grain, water
+from tests.reference.scenes import column, dry, grain, warned, water
 
 ONE = {"grains": {"density": 2500, "hydraulic_radius_ratio": 1.0, "grain": [grain(0.003, 0.002)]}, "gate": None}
 DRY = {"grains": {"density": 2500, "grain": [grain(0.003, 0.002)]}, "gate": None}
@@ -177,11 +177,6 @@ def test_a_force_of_ones_own_without_a_mean_has_the_parabola(law, speed, tmp_pat
     (tmp_path / "laws.py").write_text(FORCES, encoding="utf-8")
     scene = pushed(force=f"{tmp_path / 'laws.py'}:{law}", **PERIODIC, time__end=2e-1 if law == "steady" else 1e3)
     assert derive(scene).speed == pytest.approx(speed, rel=0.02)  # places of looks miss the peak by 1/32 of a period
-
-
-def warned(scene, word):
-    """The warnings with a word in them."""
-    return [line for line in derive(scene).warnings if word in line]
 
 
 INLET = {"domain__left": {"kind": "velocity", "velocity": [0.01, 0.0]}, "fluid__body_force": None, "time__end": 0.06}

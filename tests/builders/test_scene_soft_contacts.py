@@ -6,11 +6,10 @@ from typing import Any
 import pytest
 
 from porescale.builders.build import build
-from porescale.builders.derive import derive
 from porescale.common.core.errors import Unstable
 from porescale.dem.measures.survey import max_overlap
 from porescale.scene.scene import Scene
-from tests.reference.scenes import column, dry, grain
+from tests.reference.scenes import column, dry, grain, warned
 
 FALL = math.sqrt(2 * 9.81 * 0.0055)
 """Speed (m/s) of the grain below as it comes to the floor: from 6 mm, with a radius of 0.5 mm."""
@@ -28,7 +27,7 @@ def falling(contact: dict[str, Any], **changes: Any) -> Scene:
 
 def soft(scene: Scene) -> list[str]:
     """The warnings of contacts that are too soft."""
-    return [line for line in derive(scene).warnings if "too soft" in line]
+    return warned(scene, "too soft")
 
 
 def deepest(scene: Scene) -> float:

@@ -21,7 +21,7 @@ import pytest
 
 from porescale.demseg.deck import read_deck
 from porescale.demseg.trace import trace
-from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, row_on_floor
+from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, on_floor
 from tests.reference.folders import CASES, script
 
 UNIT = math.sqrt(math.pi * 4.0 * 2.5 / 1e8)
@@ -52,7 +52,7 @@ def test_both_roots_lie_in_the_unit_circle_up_to_the_limit(h):
 @pytest.mark.parametrize(("h", "wrong"), [(0.0, 0.0), (0.3, 0.0), (1.0, 0.0), (0.3, 0.01)])
 def test_a_step_here_is_that_of_the_tutorial(h, wrong):
     dt = 0.7 * math.sqrt(MASS / STIFFNESS)
-    grains = row_on_floor(1, -1e-2 * RADIUS, law_at(h, "overlap"))
+    grains = on_floor(law_at(h, "overlap"), -1e-2 * RADIUS)
     grains.discs.velocity[0, 1] = -1e-3 * RADIUS / dt
     u = []
     for _ in range(4):

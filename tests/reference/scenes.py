@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from porescale import Scene
+from porescale.builders.derive import derive
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 
@@ -70,6 +71,11 @@ def refusals(make: Callable[[], object]) -> list[str]:
     with pytest.raises(InputError) as caught:
         make()
     return [fault.line() for fault in caught.value.faults]
+
+
+def warned(scene: Scene, word: str) -> list[str]:
+    """The warnings of a scene with a word in them."""
+    return [line for line in derive(scene).warnings if word in line]
 
 
 def grain(x: float, y: float, diameter: float = 0.001, **more: Any) -> dict[str, Any]:

@@ -3,8 +3,7 @@
 import numpy as np
 
 from porescale.builders.build import build
-from porescale.builders.derive import derive
-from tests.reference.scenes import water
+from tests.reference.scenes import warned, water
 
 
 def test_an_inflow_that_starts_at_once_rings_and_fluid_that_flows_already_does_not():
@@ -21,7 +20,7 @@ def test_an_inflow_that_starts_at_once_rings_and_fluid_that_flows_already_does_n
         for _ in range(steps):
             simulation.advance(1)
             found.append(simulation.field("velocity_x")[:, 35:45].mean() / 0.01)
-        return np.array(found), [line for line in derive(scene).warnings if "lets fluid in at once" in line]
+        return np.array(found), warned(scene, "lets fluid in at once")
 
     at_once, (said,) = flows(420)
     assert "a pulse of 29 Pa goes to and fro at 60.1 Hz" in said  # as of a piston of that speed

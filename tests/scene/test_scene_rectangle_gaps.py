@@ -10,7 +10,7 @@ from porescale.builders.after_run import density_doubt
 from porescale.builders.build import build
 from porescale.builders.derive import derive
 from porescale.scene.scene import Scene
-from tests.reference.scenes import refusals, water
+from tests.reference.scenes import refusals, warned, water
 
 PISTON: dict[str, Any] = {"lower": [0.0, 0.0], "upper": [0.002, 0.008], "velocity": [0.05, 0.0]}
 """From the left side, over the whole height of 8 mm; 1.2 mm further in 0.024 s."""
@@ -26,7 +26,7 @@ def channel(*sections: dict[str, Any], **changes: Any) -> Scene:
 
 def gaps(scene: Scene) -> list[str]:
     """The warnings of gaps."""
-    return [line for line in derive(scene).warnings if "the gap behind it" in line]
+    return warned(scene, "the gap behind it")
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.measures.energy import elastic
 from porescale.dem.measures.survey import max_overlap
 from porescale.scene.bodies.rectangle import Rectangle, outline
-from tests.reference.scenes import column, dry, grain, refusals, water
+from tests.reference.scenes import column, dry, grain, refusals, warned, water
 
 WALLS: dict[str, Any] = {"domain__left": "wall", "domain__right": "wall", "fluid__body_force": None, "gravity": [0, 0]}
 BLOCK: dict[str, Any] = {"lower": [0.004, 0.002], "upper": [0.006, 0.004]}
@@ -165,7 +165,7 @@ def test_a_piston_that_starts_at_once_rings_and_a_ramp_of_the_length_that_is_sai
         for _ in range(steps):
             simulation.advance(1)
             found.append(simulation.fluid.fields()[1][:, 35:45].mean() * simulation.coupled.scales.velocity / 0.01)
-        return np.array(found), [line for line in derive(scene).warnings if "ramp" in line]
+        return np.array(found), warned(scene, "ramp")
 
     at_once, (said,) = flows(420)
     # rho c V: 1000 * 0.0002/4e-5/sqrt 3 * 0.01 = 29 Pa;  w = pi c/2L = 378/s;  T = 20/w
@@ -186,13 +186,13 @@ def test_a_piston_that_starts_at_once_rings_and_a_ramp_of_the_length_that_is_sai
 
 
 def test_a_gate_that_rises_along_itself_and_a_thick_liquid_do_not_ring():
-    assert not [it for it in derive(tank(GATE)).warnings if "ramp" in it]
+    assert not warned(tank(GATE), "ramp")
     piston = {"lower": [-0.009, -0.001], "upper": [0.002, 0.009], "velocity": [0.01, 0.0]}
     given = {"fluid__body_force": None, "domain__left": "wall", "time__end": 0.9, "rectangle": [piston]}
     out = {"domain__right": {"kind": "pressure", "pressure": 0.0}}
-    assert [it for it in derive(water(**given | out | {"time__end": 0.1})).warnings if "ramp" in it]
+    assert warned(water(**given | out | {"time__end": 0.1}), "ramp")
     thick = {"fluid__viscosity": 1e-4}  # damped at sqrt(nu w/2)/H = 17/s, long before half of 0.9 s
-    assert not [it for it in derive(water(**given | out | thick)).warnings if "ramp" in it]
+    assert not warned(water(**given | out | thick), "ramp")
 
 
 def test_a_rectangle_goes_as_its_section_says():
@@ -382,9 +382,9 @@ def test_a_gate_holds_the_packing_until_it_lifts_and_leaves_through_a_slip_lid()
 
 def test_a_rectangle_thinner_than_two_cells_is_warned_of():
     thin = {"lower": [0.004, 0.0], "upper": [0.004 + 1.9 * H, 0.006]}
-    (said,) = [it for it in derive(tank(thin)).warnings if "thick" in it]
+    (said,) = warned(tank(thin), "thick")
     assert said.startswith(
         "rectangle 0 is 1.9 cells thick: below 2 it may fill no cell and lets fluid through; a spacing"
     )
-    assert not [it for it in derive(tank({**thin, "upper": [0.004 + 2 * H, 0.006]})).warnings if "thick" in it]
-    assert not [it for it in derive(tank(thin)).warnings if "nothing solid" in it]
+    assert not warned(tank({**thin, "upper": [0.004 + 2 * H, 0.006]}), "thick")
+    assert not warned(tank(thin), "nothing solid")

@@ -13,7 +13,7 @@ from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from tests.reference.folders import ROOT
-from tests.reference.scenes import column, dry, grain, refusals, table, water
+from tests.reference.scenes import column, dry, grain, refusals, table, warned, water
 
 TABLE1 = {"spacing": 1e-5, "relaxation_time": 0.8, "viscosity": 1e-4, "step": 1e-6}
 
@@ -89,10 +89,10 @@ def test_the_hydraulic_radius_must_be_stated_by_grains_in_fluid():
 
 
 def test_a_hydraulic_radius_ratio_of_one_warns_that_it_seals_a_bed():
-    (warning,) = [it for it in derive(column(grains__hydraulic_radius_ratio=1.0)).warnings if "seals" in it]
+    (warning,) = warned(column(grains__hydraulic_radius_ratio=1.0), "seals")
     assert warning.startswith("hydraulic_radius_ratio = 1 seals a two-dimensional bed at rest")
     assert warning in report(column(grains__hydraulic_radius_ratio=1.0)).warnings
-    assert not [it for it in derive(column()).warnings if "seals" in it]
+    assert not warned(column(), "seals")
 
 
 EMPTY = {"density": 2500, "hydraulic_radius_ratio": 0.8}
@@ -217,7 +217,7 @@ def test_the_weight_of_a_column_warns_and_then_refuses_through_the_pore_pressure
     still = derive(column(**viscous))
     assert still.density_variation == pytest.approx(3 * 1500 * 9.81 * 0.7 * 0.0055 / 25e3, rel=1e-4)
     heavy = {"grains__density": 1000 + 1500 * 0.1 / still.density_variation, **viscous}
-    warnings = [it for it in derive(column(**heavy)).warnings if "pore pressure" in it]
+    warnings = warned(column(**heavy), "pore pressure")
     assert "density by 0.1;" in warnings[0]
     heavier = {"grains__density": 1000 + 1500 * 0.31 / still.density_variation, **viscous}
     assert any(
@@ -227,9 +227,9 @@ def test_the_weight_of_a_column_warns_and_then_refuses_through_the_pore_pressure
 
 def test_the_repair_of_the_pore_pressure_removes_the_warning():
     viscous = {"fluid__viscosity": 1e-4, "grains__density": 15000.0}
-    (warning,) = [it for it in derive(column(**viscous)).warnings if "pore pressure" in it]
+    (warning,) = warned(column(**viscous), "pore pressure")
     step = float(warning.partition("a step of ")[2].partition(" s")[0])
-    assert not [it for it in derive(column(fluid__step=step, **viscous)).warnings if "pore pressure" in it]
+    assert not warned(column(fluid__step=step, **viscous), "pore pressure")
 
 
 def test_doubts_about_resolution_and_relaxation_time_are_warnings():

@@ -3,8 +3,7 @@
 import pytest
 
 from porescale.builders.build import build
-from porescale.builders.derive import derive
-from tests.reference.scenes import column, dry, grain
+from tests.reference.scenes import column, dry, grain, warned
 
 SAND, STEEL = {"name": "sand", "density": 2650}, {"name": "steel", "density": 7800}
 HANDS = {"gate": None, "grains__packing": None, "grains__density": 2500}
@@ -13,7 +12,7 @@ HANDS = {"gate": None, "grains__packing": None, "grains__density": 2500}
 def said(*materials, make=dry, **changes):
     """The warnings about materials."""
     scene = make(**HANDS | {"material": list(materials)} | changes)
-    return scene, [line for line in derive(scene).warnings if "material" in line]
+    return scene, warned(scene, "material")
 
 
 def grains(*names):
@@ -60,4 +59,4 @@ def test_a_density_that_no_material_leaves_to_the_grains_is_said():
     assert said({"name": "sand"}, STEEL, **grains("steel", "sand"))[1] == []
     assert said({"name": "sand", "density": 2500}, STEEL, **grains("steel", "sand"))[1] == []
     assert said(**grains("", ""))[1] == []
-    assert not [line for line in derive(column()).warnings if "material" in line]
+    assert not warned(column(), "material")

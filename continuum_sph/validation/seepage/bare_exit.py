@@ -1,12 +1,12 @@
 """Steady flow under a sheet pile out of ground on which no water stands.  SI."""
 
 import functools
-from typing import Any
 
 from continuum_sph.builders.parts.sheet_pile import NAME
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.seepage.sheet_pile import SheetPile
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.evidence.convergence import Ladders
 from porescale.common.evidence.validations import Measured, Validations
 
@@ -26,17 +26,12 @@ def scene(share: float, rows: int) -> Scene:
     its left alone."""
     spacing = 1.0 / rows
     width = (2 * rows + 1) * spacing
-    table: dict[str, Any] = {
-        "tank": {"width": width, "height": 1.0 + HEAD + 4.0 * spacing, "lid": False},
-        "water": {"sound_speed": SOUND, "column": [{"width": 1.0, "height": 1.0 + HEAD}]},
-        "soil": {"held": True, "saturated": True, "permeability": PERMEABILITY,
-                 "body": [{"outline": [[0, 0], [width, 0], [width, 1], [0, 1]]}]},
-        "pile": {"x": 0.5 * width, "tip": 1.0 - share},
-        "numerics": {"spacing": spacing},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
-    }  # fmt: skip
-    return Scene.model_validate(table)
+    ground = {"held": True, "saturated": True, "permeability": PERMEABILITY, "body": [level_ground(width, 1.0)]}
+    return tank_scene(
+        width, 1.0 + HEAD + 4.0 * spacing, spacing, lid=False, soil=ground,
+        water={"sound_speed": SOUND, "column": [{"width": 1.0, "height": 1.0 + HEAD}]},
+        pile={"x": 0.5 * width, "tip": 1.0 - share},
+    )  # fmt: skip
 
 
 @functools.cache

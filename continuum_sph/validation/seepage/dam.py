@@ -264,14 +264,14 @@ STRETCH = 3.5
 """Seconds for which they are: of H1/20, 35 particles pass."""
 
 
-def unlike(given: Dam, span: tuple[float, float] = SETTLED_SPAN, stretch: float = STRETCH) -> float:
+def unlike(given: Dam, span: tuple[float, float] = SETTLED_SPAN) -> float:
     """Largest difference of what passes into and out of a dam, over what passes by k (H1² - H2²)/2L, of all stretches
     (s) of time within a ``span`` (s)."""
     late = course(given, span[1])
     into, out = late[late[:, 0] >= span[0], 1:3].T
-    lag = round(stretch / EVERY)
+    lag = round(STRETCH / EVERY)
     apart = (into - out)[lag:] - (into - out)[:-lag]
-    return float(np.abs(apart).max()) / (given.discharge * stretch)
+    return float(np.abs(apart).max()) / (given.discharge * STRETCH)
 
 
 @VALIDATIONS.row(

@@ -81,14 +81,14 @@ SINKING = Infiltration()
 SINKING_TIMES = (0.3, 0.8)  # s
 
 
-def way_of_the_front(given: Infiltration = SINKING) -> float:
+def way_of_the_front() -> float:
     """Way of the wetting front between two times over what it is exactly."""
-    both, places = given.build(), []
+    both, places = SINKING.build(), []
     for time in SINKING_TIMES:
         while both.time < time:
             both.advance()
-        places.append(given.reached(both))
-    return (places[1] - places[0]) / (given.front(SINKING_TIMES[1]) - given.front(SINKING_TIMES[0]))
+        places.append(SINKING.reached(both))
+    return (places[1] - places[0]) / (SINKING.front(SINKING_TIMES[1]) - SINKING.front(SINKING_TIMES[0]))
 
 
 @VALIDATIONS.row(

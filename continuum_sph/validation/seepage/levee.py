@@ -3,7 +3,7 @@
 import functools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,7 @@ class Levee:
     rising: float = 0.5
     end: float = 5.5
     porosity: float = 0.4
+    over: ClassVar[float] = OVER
 
     @property
     def spacing(self) -> float:
@@ -137,9 +138,9 @@ class Levee:
                 yield np.array(row), model
 
     def times(self, rows: Floats) -> dict[str, float]:
-        """When (s) each of the PARTS had moved by FAR and water was OVER the crest, on straight lines between the
+        """When (s) each of the PARTS had moved by FAR and water was ``over`` the crest, on straight lines between the
         rows of the course (m, 5); nan for never."""
-        limits = [FAR * self.height] * len(PARTS) + [OVER * self.height**2]
+        limits = [FAR * self.height] * len(PARTS) + [self.over * self.height**2]
         found = {}
         for column, (name, limit) in enumerate(zip((*PARTS, "overtopped"), limits, strict=True), 1):
             beyond = np.flatnonzero(rows[:, column] > limit)

@@ -7,6 +7,7 @@ import numpy as np
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.schema.sections import validate
 
@@ -14,6 +15,7 @@ VALIDATIONS = Validations()
 
 WIDTH, BED, STANDS = 1.0, 0.2, 0.25  # m: of the tank; surface of the ground; depth of the water once it lies level
 SECONDS = 10.0
+HELD = {"stiffness": 2e6, "friction_angle": "30 degree", "held": True, "permeability": 1e-3}
 
 
 def stirred(spacing: float, seconds: float = SECONDS) -> tuple[float, float]:
@@ -23,26 +25,13 @@ def stirred(spacing: float, seconds: float = SECONDS) -> tuple[float, float]:
     A column twice as deep as it will stand falls from the left half of the tank and sloshes for so many ``seconds``
     over ground that is held and full of water.
     """
-    outline = [[0.0, 0.0], [WIDTH, 0.0], [WIDTH, BED], [0.0, BED]]
-    scene = validate(
-        Scene,
-        {
-            "tank": {"width": WIDTH, "height": 1.4, "lid": False},
-            "numerics": {"spacing": spacing},
-            "time": {"end": seconds},
-            "output": {"snapshot_interval": seconds, "series_interval": seconds},
-            "soil": {
-                "stiffness": 2e6, "friction_angle": "30 degree", "held": True, "permeability": 1e-3,
-                "body": [{"outline": outline}],
-            },
-            "water": {
-                "column": [
-                    {"width": WIDTH, "height": BED},
-                    {"width": 0.5 * WIDTH, "height": 2.0 * STANDS, "bottom": BED},
-                ],
-            },
-            "level": [{"x": 0.25 * WIDTH}, {"x": 0.75 * WIDTH}],
-        },
+    column = [
+        {"width": WIDTH, "height": BED},
+        {"width": 0.5 * WIDTH, "height": 2.0 * STANDS, "bottom": BED},
+    ]
+    scene = tank_scene(
+        WIDTH, 1.4, spacing, seconds, lid=False, water={"column": column},
+        soil=HELD | {"body": [level_ground(WIDTH, BED)]}, level=[{"x": 0.25 * WIDTH}, {"x": 0.75 * WIDTH}],
     )  # fmt: skip
     model = Simulation(scene)
     while model.time < seconds:
@@ -92,11 +81,7 @@ def front_speed(rows: int, bed: str = "ground") -> float:
         "water": {"viscosity": VISCOSITY, "column": [column]},
     }
     if bed == "ground":
-        outline = [[0.0, 0.0], [width, 0.0], [width, floor], [0.0, floor]]
-        table["soil"] = {
-            "stiffness": 2e6, "friction_angle": "30 degree", "held": True, "permeability": 1e-3,
-            "body": [{"outline": outline}],
-        }  # fmt: skip
+        table["soil"] = HELD | {"body": [level_ground(width, floor)]}
         table["water"]["column"] = [{"width": width, "height": floor}, column]
     else:
         table["tank"]["walls"] = "floor and lid stick" if bed == "stick" else "slip"

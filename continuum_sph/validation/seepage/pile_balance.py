@@ -6,8 +6,8 @@ import numpy as np
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.common.schema.sections import validate
 
 VALIDATIONS = Validations()
 
@@ -19,29 +19,22 @@ def scene_of(rows: int) -> Scene:
     """A scene of ground of ``rows`` that is held, with a sheet pile through half of it."""
     spacing = GROUND / rows
     width = 2.0 * SIDE
-    outline = [[0.0, 0.0], [width, 0.0], [width, GROUND], [0.0, GROUND]]
     pool = {"bottom": GROUND, "left": 0.0}
-    return validate(
-        Scene,
-        {
-            "tank": {"width": width, "height": 2.4, "lid": False},
-            "numerics": {"spacing": spacing, "artificial_viscosity": 0.1, "tension": "cut"},
-            "time": {"end": UNTIL},
-            "output": {"snapshot_interval": UNTIL, "series_interval": UNTIL},
-            "soil": {
-                "stiffness": 3.71e5, "held": True, "permeability": 0.03, "porosity": 0.4,
-                "body": [{"outline": outline}],
-            },
-            "pile": {"x": SIDE, "tip": 0.5 * GROUND},
-            "water": {
-                "sound_speed": 81.0,
-                "column": [{"width": SIDE, "height": UPSTREAM}, {"left": SIDE, "width": SIDE, "height": DOWNSTREAM}],
-            },
-            "reservoir": [
-                pool | {"right": SIDE, "level": UPSTREAM, "name": "upstream"},
-                pool | {"left": SIDE + spacing, "right": width, "level": DOWNSTREAM, "name": "downstream"},
-            ],
+    return tank_scene(
+        width, 2.4, spacing, UNTIL, lid=False, numerics={"artificial_viscosity": 0.1, "tension": "cut"},
+        soil={
+            "stiffness": 3.71e5, "held": True, "permeability": 0.03, "porosity": 0.4,
+            "body": [level_ground(width, GROUND)],
         },
+        pile={"x": SIDE, "tip": 0.5 * GROUND},
+        water={
+            "sound_speed": 81.0,
+            "column": [{"width": SIDE, "height": UPSTREAM}, {"left": SIDE, "width": SIDE, "height": DOWNSTREAM}],
+        },
+        reservoir=[
+            pool | {"right": SIDE, "level": UPSTREAM, "name": "upstream"},
+            pool | {"left": SIDE + spacing, "right": width, "level": DOWNSTREAM, "name": "downstream"},
+        ],
     )  # fmt: skip
 
 

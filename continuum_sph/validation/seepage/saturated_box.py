@@ -20,12 +20,10 @@ from porescale.common.neighbors import PairList, square_lattice
 VALIDATIONS = Validations()
 
 
-def saturated_box(
-    across: int, seed: int, *, speed: float = 0.5, permeability: float = 1e-2, share: float = 1.0
-) -> Seepage:
+def saturated_box(across: int, seed: int, *, speed: float = 0.5, permeability: float = 1e-2) -> Seepage:
     """A periodic box of 1 m of saturated elastic soil without gravity or walls, both layers stirred at random.
 
-    speed : of the stirring, m/s;  share : of the step that the layers allow.
+    speed : of the stirring, m/s.
     """
     spacing, porosity, modulus = 1.0 / across, 0.4, 1e6
     rng = np.random.default_rng(seed)
@@ -38,17 +36,17 @@ def saturated_box(
         n, x + rng.uniform(-0.1, 0.1, x.shape) * spacing, rng.normal(0.0, speed, x.shape),
         np.full(n, material.density * spacing**2), np.full(n, material.density), np.zeros((n, 4)),
     )  # fmt: skip
-    ground = SoilFlow(soil, SoilLaw(smoothing, spacing, (material,), (0.0, 0.0), damping=0.0, courant=0.25 * share),
+    ground = SoilFlow(soil, SoilLaw(smoothing, spacing, (material,), (0.0, 0.0), damping=0.0, courant=0.25),
                       PairList(n, skin, *box, full=True))  # fmt: skip
     ground.start()
     skeleton = skeleton_of(ground, GRAINS, permeability)
     at = x + rng.uniform(-0.1, 0.1, x.shape) * spacing
     state = Tait(WATER, 40.0)
-    rules = Law(smoothing, spacing, (Fluid(state),), (0.0, 0.0), diffusion=0.0, cut=False, courant=0.25 * share)
+    rules = Law(smoothing, spacing, (Fluid(state),), (0.0, 0.0), diffusion=0.0, cut=False, courant=0.25)
     layer = Layer(n, at, rng.normal(0.0, speed, x.shape), np.full(n, porosity * WATER * spacing**2), np.full(n, WATER))
     flow = pore_flow(layer, rules, skeleton, Resistance(porosity), *box)
     whole = porosity * WATER + material.density
-    both = Seepage(flow, ground, material.column_modulus, whole / share**2)
+    both = Seepage(flow, ground, material.column_modulus, whole)
     both.start()
     return both
 

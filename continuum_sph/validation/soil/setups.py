@@ -1,7 +1,6 @@
 """What experiments with soil share: soil in a tank, a free body of it, columns and layers on a slope.  SI."""
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -47,12 +46,10 @@ def in_tank(
     return placed(x, stress, tank, given, floor=floor, sides=sides, skin=SKIN)
 
 
-def run_until(flow: SoilFlow, time: float, each: Callable[[SoilFlow], None] | None = None) -> SoilFlow:
-    """Advance ``flow`` to ``time`` (s) or just beyond, calling ``each`` after every step."""
+def run_until(flow: SoilFlow, time: float) -> SoilFlow:
+    """Advance ``flow`` to ``time`` (s) or just beyond."""
     while flow.time < time:
         flow.advance()
-        if each is not None:
-            each(flow)
     return flow
 
 

@@ -26,23 +26,23 @@ SAND = Material(1e7, DENSITY, sin_friction=TAN_PHI, sin_dilatancy=DILATANCY, sof
 PRESSURE, PRESSED, STEPS = 1e5, 0.06, 1500  # Pa; upright strain
 
 
-def exact_element(upright: float, material: Material = SAND) -> tuple[float, float]:
+def exact_element(upright: float) -> tuple[float, float]:
     """(σ1/σ3, volume strain, dilation positive) of a biaxial element under PRESSURE at an ``upright`` strain beyond
     failure.
 
     With σ3 kept r = σ3 s/(1 - s) of s = sin φ(γ), the elastic shear strain is r/G, the volume strain (p - σ3)/B, p - σ3
     = r, less ∫ sin ψ dγ: all of the plastic shear strain γ, which is found where both add up to the upright strain.
     """
-    soft = material.softening
+    soft = SAND.softening
     assert soft is not None
-    area, shear = (it * material.stiffness for it in (material.area_modulus, material.shear_modulus))
+    area, shear = (it * SAND.stiffness for it in (SAND.area_modulus, SAND.shear_modulus))
 
     def at(plastic: float) -> tuple[float, float]:
         """(r, Pa, volume strain, compression positive)."""
         left = math.exp(-plastic / soft.shear_strain)
-        sine = soft.sin_friction + (material.sin_friction - soft.sin_friction) * left
+        sine = soft.sin_friction + (SAND.sin_friction - soft.sin_friction) * left
         radius = PRESSURE * sine / (1.0 - sine)
-        return radius, radius / area - material.sin_dilatancy * soft.shear_strain * (1.0 - left)
+        return radius, radius / area - SAND.sin_dilatancy * soft.shear_strain * (1.0 - left)
 
     def lacks(plastic: float) -> float:
         """Twice the upright strain less that which is asked for."""
@@ -61,8 +61,6 @@ def element(material: Material = SAND) -> tuple[float, float]:
     return along / beside, -(upright + across)
 
 
-LATE = math.exp(-1.5 * PRESSED / STRAIN)
-"""Of the difference of strengths that is left at PRESSED at most: γ is over 1.5 times the upright strain."""
 LAG = 2.0 * PRESSED / STEPS * (TAN_PHI - LOOSE) / STRAIN
 """By how much sin φ is ahead of itself for a step, whose γ is twice its upright strain, at the start."""
 

@@ -10,7 +10,7 @@ import functools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.unsaturated import MoistSoil
 from continuum_sph.unsaturated.richards import CONTENT
-from continuum_sph.validation.seepage.levee import FAR, GRAVITY, PARTS
+from continuum_sph.validation.seepage.levee import GRAVITY, PARTS
 from continuum_sph.validation.seepage.levee import Levee as FullLevee
 from continuum_sph.validation.unsaturated.slices import Circle, Slope, least
 from porescale.common.core.types import Floats
@@ -42,6 +42,7 @@ class Levee(FullLevee):
     sharp: float = 3.0
     residual: float = 0.1
     end: float = 4.5
+    over: ClassVar[float] = 0.0  # the crest lies under the river
 
     def table(self) -> dict[str, Any]:
         """The scene of it, as a file would have it."""
@@ -71,16 +72,6 @@ class Levee(FullLevee):
                 over = model.flow.outside.levels[0].at(model.time) - crest
                 row = [model.time - self.settle, *(moved[part].mean() for part in parts.values()), over]
                 yield np.array(row), model
-
-    def times(self, rows: Floats) -> dict[str, float]:
-        """When (s) each of the PARTS had moved by FAR and the crest lay under the river; nan for never."""
-        limits = [FAR * self.height] * len(PARTS) + [0.0]
-        found = {}
-        for column, (name, limit) in enumerate(zip((*PARTS, "overtopped"), limits, strict=True), 1):
-            beyond = np.flatnonzero(rows[:, column] > limit)
-            last = rows[beyond[0] - 1 : beyond[0] + 1] if beyond.size and beyond[0] else rows[:1]
-            found[name] = float(np.interp(limit, last[:, column], last[:, 0])) if beyond.size else math.nan
-        return found
 
     def slope(self, flow: MoistSoil) -> Slope:
         """The levee of now as `slices` take it: its first outline, the computed π, whole weights."""

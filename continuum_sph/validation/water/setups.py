@@ -3,6 +3,7 @@
 import numpy as np
 
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
@@ -12,7 +13,6 @@ from continuum_sph.water.step import Flow
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList, square_lattice
-from porescale.common.schema.sections import validate
 
 
 def column_scene(
@@ -27,21 +27,12 @@ def column_scene(
     **numerics: float | str,
 ) -> Scene:
     """A tank (width, height) with one column (width, height) of water in its left corner; lengths in m."""
-    return validate(
-        Scene,
-        {
-            "gravity": gravity,
-            "tank": {"width": tank[0], "height": tank[1]},
-            "water": {
-                "viscosity": viscosity,
-                "pressure": pressure,
-                "column": [{"width": column[0], "height": column[1]}],
-            },
-            "numerics": {"spacing": spacing, **numerics},
-            "time": {"end": end},
-            "output": {"snapshot_interval": end, "series_interval": end},
-        },
-    )
+    water = {
+        "viscosity": viscosity,
+        "pressure": pressure,
+        "column": [{"width": column[0], "height": column[1]}],
+    }
+    return tank_scene(*tank, spacing, end, gravity=gravity, water=water, numerics=numerics)
 
 
 def run_until(flow: Flow, time: float) -> Flow:
@@ -51,7 +42,7 @@ def run_until(flow: Flow, time: float) -> Flow:
     return flow
 
 
-def open_box(across: int, seed: int, *, alpha: float = 0.05, xsph: float = 0.0) -> Flow:
+def open_box(across: int, seed: int) -> Flow:
     """A periodic box of 1 m of disordered liquid stirred at random, without walls or gravity."""
     spacing, density = 1.0 / across, 1000.0
     rng = np.random.default_rng(seed)
@@ -60,7 +51,7 @@ def open_box(across: int, seed: int, *, alpha: float = 0.05, xsph: float = 0.0) 
     v = rng.normal(0.0, 0.5, x.shape)
     smoothing = Smoothing("wendland", RATIO * spacing)
     fluid = Fluid(Tait(density, 20.0), 1.0)
-    law = Law(smoothing, spacing, (fluid,), (0.0, 0.0), alpha=alpha, beta=0.1, xsph=xsph, cut=False)
+    law = Law(smoothing, spacing, (fluid,), (0.0, 0.0), alpha=0.05, beta=0.1, xsph=0.0, cut=False)
     layer = Layer(len(x), x, v, np.full(len(x), density * spacing**2), np.full(len(x), density))
     pairs = PairList(len(x), 0.25 * smoothing.length, (0.0, 0.0), (1.0, 1.0), (True, True), full=True)
     flow = Flow(layer, law, pairs)

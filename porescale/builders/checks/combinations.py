@@ -2,9 +2,9 @@
 
 from porescale.builders.checks.polygons_in_fluid import check_in_fluid
 from porescale.builders.initial.contact_laws import law_class
-from porescale.builders.initial.walls import moving_sides, wall_names
+from porescale.builders.initial.walls import moving_sides
 from porescale.common.core.errors import Fault
-from porescale.common.schema.names import name_faults
+from porescale.common.schema.names import name_faults, names_of
 from porescale.scene.domain import SIDES
 from porescale.scene.scene import Scene
 
@@ -100,7 +100,7 @@ def check_walls(scene: Scene) -> list[Fault]:
         problem = "is for dry grains"
         repair = "leave [fluid] or it out" if scene.fluid else "add [grains] or leave it out"
         faults += [Fault(key, None, problem, repair=repair) for key in moving]
-    names = wall_names(scene.wall)
+    names = names_of(scene.wall, "wall")
     faults += [
         Fault(f"wall[{k}].name", name, "is taken", repair="give each its own")
         for k, name in enumerate(names)

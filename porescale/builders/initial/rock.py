@@ -10,18 +10,15 @@ from porescale.builders.initial.frames import FREE, HELD, PLATES, Placed
 from porescale.builders.initial.packing import compressed
 from porescale.builders.initial.time_functions import schedule_of
 from porescale.common.core.types import Floats
-from porescale.dem.bodies.frames import chain, polygon
+from porescale.dem.bodies.frames import polygon
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.motion.control import Placed as PlacedControl
 from porescale.dem.motion.time_function import Schedule, Sine, Table
-from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
+from porescale.dem.prepare.rock import blocks, plates_beside
 from porescale.scene.bodies.rock import Rock
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
-
-BEYOND = 0.1
-"""Of the length of a plate's side of the sample: how far it stands out at both ends."""
 
 
 def has_plates(rock: Rock | None) -> bool:
@@ -58,23 +55,17 @@ def rock_frames(scene: Scene, law: ContactLaw) -> list[Placed]:
         assert rock.gap
         assert rock.pressed
         thickness, off = 0.5 * (rock.gap + rock.pressed), 0.5 * rock.gap
-        for part in (voronoi if rock.kind == "cells" else delaunay)(at, lower, upper):
-            # A side shorter than the gap would be hidden behind the thickness of its neighbours.
-            left = shrunk(part, 0.5 * rock.gap, shortest=rock.gap)
-            if left is not None:
-                made.append(Placed("rock", "rock", polygon(left, thickness, density, material=material), FREE))
+        made = [
+            Placed("rock", "rock", polygon(part, thickness, density, material=material), FREE)
+            for part in blocks(rock.kind, at, lower, upper, rock.gap)
+        ]
     if rock.plates == "none":
         return made
     axis = 0 if rock.plates == "x" else 1
-    out = BEYOND * (upper[1 - axis] - lower[1 - axis])
     moves = PlacedControl(_times(schedule_of(rock.strain), upper[axis] - lower[axis])) if rock.strain else HELD[axis]
-    for name, place in zip(PLATES, (lower[axis] - off, upper[axis] + off), strict=True):
-        ends = [(place, lower[1 - axis] - out), (place, upper[1 - axis] + out)]
-        points = ends if axis == 0 else [(x, y) for y, x in ends]
-        frame = chain(
-            points, thickness, density, width=2.0 * max(thickness, off), long=True,
-            material=plan.number("", wall=True),
-        )  # fmt: skip
+    wall = plan.number("", wall=True)
+    plates = plates_beside(lower, upper, thickness, off, density, axis=axis, material=wall)
+    for name, frame in zip(PLATES, plates, strict=True):
         motion = list(HELD)
         if name == PLATES[1]:
             motion[axis] = moves

@@ -17,11 +17,6 @@ ACROSS = {"left": ("bottom", "top"), "right": ("bottom", "top"), "bottom": ("lef
 """The two sides between which a stress on a side acts."""
 
 
-def wall_names(walls: Sequence[Wall]) -> list[str]:
-    """Names of the free walls."""
-    return names_of(walls, "wall")
-
-
 def moving_sides(domain: Domain) -> list[str]:
     """Sides that move, at a velocity or by a servo."""
     return [name for name, it in domain.sides.items()
@@ -30,7 +25,7 @@ def moving_sides(domain: Domain) -> list[str]:
 
 def add_walls(domain: Domain, walls: Sequence[Wall], grains: Grains) -> None:
     """Put the free walls there and set all in motion that move."""
-    for name, it in zip(wall_names(walls), walls, strict=True):
+    for name, it in zip(names_of(walls, "wall"), walls, strict=True):
         grains.add_wall(name, (it.x, it.y), it.normal, it.friction)
         if it.moves:
             grains.steering.move_wall(
@@ -70,7 +65,7 @@ class WallPlaces:
     """Positions of the moving walls of a scene: columns of forces.csv."""
 
     def __init__(self, domain: Domain, walls: Sequence[Wall]) -> None:
-        self.sides, self.walls = moving_sides(domain), dict(zip(wall_names(walls), walls, strict=True))
+        self.sides, self.walls = moving_sides(domain), dict(zip(names_of(walls, "wall"), walls, strict=True))
 
     def row(self, grains: Grains) -> dict[str, float]:
         """Places, m, and the direction of those that turn, rad.

@@ -11,13 +11,13 @@ import numpy as np
 from porescale.common.api.hook_source import hash_of, source_of
 from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.core.ranges import is_number
+from porescale.common.record.columns import TIME
 from porescale.common.record.schedule import Schedule, positive
 
 if TYPE_CHECKING:
     from porescale.common.core.types import AnyArray, Floats
     from porescale.common.record.model import Model
 
-TIME = "time (s)"
 ForceFunction = Callable[[float, "AnyArray", "AnyArray", "AnyArray"], None]
 SampleFunction = Callable[[Any], Mapping[str, float] | None]
 

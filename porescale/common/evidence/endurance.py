@@ -22,6 +22,7 @@ from porescale.common.evidence import files
 from porescale.common.evidence.register import Register
 from porescale.common.record.check_state import other
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
+from porescale.common.record.schedule import CHECK_EVERY
 
 NAME = "endurance"
 MARKS = 20
@@ -29,8 +30,6 @@ MEMORY = "peak memory (MiB)"
 GROWTH = 1.0
 """MiB by which the peak may grow: the interpreter's own memory; a leak of a byte a step is as much in a million."""
 FOUND = "found wrong ()"
-CHECK_EVERY = 100
-"""Steps between checks of the state, as in a run."""
 FEWEST = MARKS * CHECK_EVERY
 """Steps of a flow at least: from the first mark on, a check is behind it, and all memory that one takes."""
 KEEP_EVERY = 30.0

@@ -31,6 +31,8 @@ LEAST = 1e-4
 """Smallest error over tolerance that the figure shows; smaller ones stand at the edge."""
 SMALL = 1e-3
 """Departure from the reference below which the axis is linear."""
+BEYOND = 0.02
+"""Departure of a number from its reference from which on the numbers of a row are listed as doubtful."""
 MOST = 4
 """Numbers of a list in a cell of the table."""
 
@@ -74,9 +76,9 @@ def table(rows: Sequence[Stored]) -> list[str]:
     return files.markdown_table(head, lines)
 
 
-def doubtful(rows: Sequence[Stored], beyond: float = 0.02) -> list[str]:
+def doubtful(rows: Sequence[Stored]) -> list[str]:
     """Lines of a Markdown table of the rows that failed, first, whatever their numbers, and of those of which a number
-    is further ``beyond`` its reference, or is none, the worst first.
+    is further than BEYOND from its reference, or is none, the worst first.
 
     Rows that passed with an error of 0 are left out: their reference is a bound, which their numbers keep.
     """
@@ -85,7 +87,7 @@ def doubtful(rows: Sequence[Stored], beyond: float = 0.02) -> list[str]:
         off, _ = departures(row)
         share = np.where(np.isnan(off), math.inf, off)
         most = float(share[np.abs(share).argmax()]) if off.size else math.nan
-        if not row["passed"] or (row["error"] != 0 and abs(most) > beyond):
+        if not row["passed"] or (row["error"] != 0 and abs(most) > BEYOND):
             worst.append((most, row))
     worst.sort(key=lambda pair: (pair[1]["passed"], -abs(pair[0]) if math.isfinite(pair[0]) else -math.inf))
     lines = []

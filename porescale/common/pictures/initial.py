@@ -220,7 +220,7 @@ class _Place:
         high = min(HEIGHT, WIDTH / aspect) if not self.lying else (1.6 * WIDTH) / aspect
         high, wide = max(high, 0.5), max(high * aspect, 0.5)
         longest = max([len(it.label) for it in self.features], default=0) * 0.079 + 0.2
-        self.title = _lines(found.look.title, 60 if aspect < 0.5 else 90)
+        self.title = wrap(found.look.title, 60 if aspect < 0.5 else 90)
         head = 0.3 + LINE * len(self.title) + 0.45 * self.lying
         lens = LENS if shown.lens is not None else 0.0
         titled = max(lens, len(shown.lens.text) * 0.085) if shown.lens is not None else 0.0
@@ -315,8 +315,3 @@ def _leader(line: AnyArray, colour: str) -> Line2D:
     """A thin line, or a dot where it is one point."""
     dot = len(line) == 1
     return Line2D(line[:, 0], line[:, 1], color=colour, linewidth=0.6, marker="o" if dot else "", markersize=2.6)
-
-
-def _lines(text: str, most: int) -> list[str]:
-    """``text`` in lines of so many characters."""
-    return wrap(text, most)

@@ -11,8 +11,9 @@ import numpy as np
 from porescale.common.core.statistics import LEAST, LEVEL, student
 from porescale.common.core.types import Floats
 from porescale.common.evidence import files
+from porescale.common.record.columns import TIME
 from porescale.common.studies.ensemble import Ensemble
-from porescale.common.studies.quantities import TIME, Columns
+from porescale.common.studies.quantities import Columns
 
 Tables = Callable[[Path, str], Columns]
 MOST = 12

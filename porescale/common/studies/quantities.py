@@ -19,9 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.record.columns import TIME
+
 Columns = Mapping[str, NDArray[Any]]
 
-TIME = "time (s)"
 WHERE = ("end", "max", "min")
 """Words for the place where a number is read."""
 SHARES = ("fall", "peak")

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from porescale.common.evidence import files
+from porescale.common.record.columns import TIME
 from porescale.common.studies import ensemble_files, ensemble_picture
 from porescale.common.studies.ensemble import Ensemble, ensembles
 from porescale.common.studies.parameter_table import Point
-from porescale.common.studies.quantities import TIME, Columns, measured, title
+from porescale.common.studies.quantities import Columns, measured, title
 from porescale.common.studies.runner import FINISHED, Ended
 
 NAME = "sweep"

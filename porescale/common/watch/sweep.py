@@ -12,11 +12,11 @@ import cv2
 from porescale.common.core.errors import InputError
 from porescale.common.page.tables import over_time
 from porescale.common.record.card import FINISHED
+from porescale.common.record.columns import TIME
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
 from porescale.common.studies.ensemble_files import NAME as ENSEMBLES
 from porescale.common.studies.ensemble_picture import band
-from porescale.common.studies.quantities import TIME
 from porescale.common.studies.sweep_files import COSTS
 from porescale.common.studies.sweep_files import NAME as TABLE
 from porescale.common.watch.growing import Growing, inside

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.types import Floats
+from porescale.dem.contact.law import MU
+from porescale.dem.state import State
 
 Index = NDArray[np.int64]
 
@@ -119,3 +121,31 @@ def listed(bodies: Bodies, at: Places, force: Floats, torque: Floats, spring: Fl
     return Contacts(
         *bodies, (), *at, pushing, along, force, torque, spring, (limit > 0.0) & (np.abs(along) >= AT_LIMIT * limit)
     )
+
+
+def material_of(grains: State, discs: Index) -> NDArray[Any]:
+    """Numbers of the materials of some discs."""
+    return np.zeros(len(discs), np.uint8) if grains.material is None else grains.material[discs]
+
+
+def between(
+    grains: State, i: Index, j: Index, way: Floats, loads: tuple[Floats, Floats, Floats],
+    branch: Floats | None = None, overlap: Floats | None = None,
+) -> Contacts:  # fmt: skip
+    """Contacts of discs i with discs j (c,), at the common chord of their circles; way (c, 2) m from i to j.
+
+    loads: force (c, 2), torque (c, 2), spring (c,);  branch, overlap: as in Contacts, left out: those of two circles.
+    """
+    d = grains.discs
+    distance = np.hypot(*way.T)
+    normal = way / distance[:, None]
+    arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[j] ** 2) / distance)
+    at = Places(
+        d.position[i] + arm[:, None] * normal,
+        normal,
+        d.position[i],
+        way if branch is None else branch,
+        d.radius[i] + d.radius[j] - distance if overlap is None else overlap,
+    )
+    friction = grains.contact.table[material_of(grains, i), material_of(grains, j), MU]
+    return listed(Bodies(i, j, np.full(len(i), NOBODY)), at, *loads, friction)

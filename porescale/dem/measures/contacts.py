@@ -20,7 +20,16 @@ from porescale.dem.forces.batch import pair_forces, scratch
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
 from porescale.dem.forces.walls import HIGH, LOW, NX, PRESENT, PX, X, add_wall_forces
 from porescale.dem.listing import current_pairs
-from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
+from porescale.dem.measures.contact_list import (
+    NOBODY,
+    Bodies,
+    Contacts,
+    Places,
+    between,
+    listed,
+    material_of,
+    nearest_image,
+)
 from porescale.dem.measures.contacts_segments import bond_contacts, segment_contacts
 from porescale.dem.state import State
 
@@ -67,21 +76,7 @@ def _pairs(grains: State) -> Contacts:
     alone = Pairs(start, (2 * np.arange(count) + 1).astype(np.int32), carried, both.position, 0.0)
     numbers, which = scratch(1)
     pair_forces(both, alone, grains.contact, grains.last_dt, grains.cell, numbers[0], which[0])
-    distance = np.hypot(*apart.T)
-    normal = apart / distance[:, None]
-    arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[j] ** 2) / distance)
-    bodies = Bodies(i, j, np.full(count, NOBODY))
-    at = Places(
-        d.position[i] + arm[:, None] * normal, normal, d.position[i], apart, d.radius[i] + d.radius[j] - distance
-    )
-    return listed(
-        bodies,
-        at,
-        both.force[1::2],
-        both.torque.reshape(-1, 2),
-        carried[:, 0],
-        grains.contact.table[_material(grains, i), _material(grains, j), MU],
-    )
+    return between(grains, i, j, apart, (both.force[1::2], both.torque.reshape(-1, 2), carried[:, 0]))
 
 
 Forces = Callable[[Index], tuple[DiscArrays, Floats]]
@@ -106,12 +101,7 @@ def _surface(
         other = np.maximum(depth, 0.0) * (force[:, 1] * normal[:, 0] - force[:, 0] * normal[:, 1]) - torque
     bodies = Bodies(i, np.full(count, NOBODY), np.full(count, number))
     at = Places(nearest[i], normal, d.position[i], branch, d.radius[i] - depth)
-    return listed(bodies, at, -force, np.column_stack((torque, other)), spring, friction[_material(grains, i)])
-
-
-def _material(grains: State, discs: Index) -> NDArray[Any]:
-    """Numbers of the materials of some discs."""
-    return np.zeros(len(discs), np.uint8) if grains.material is None else grains.material[discs]
+    return listed(bodies, at, -force, np.column_stack((torque, other)), spring, friction[material_of(grains, i)])
 
 
 def _wall(grains: State) -> list[Touched]:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import segments_now
-from porescale.dem.contact.law import MU
 from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.forces.segment_list import SegmentList
 from porescale.dem.forces.segments import (
@@ -21,7 +20,7 @@ from porescale.dem.forces.segments import (
     transfer_history,
     weight_of,
 )
-from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
+from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, between, listed, nearest_image
 from porescale.dem.state import State
 
 Index = NDArray[np.int64]
@@ -86,28 +85,9 @@ def _alone(
     found = grains.some_discs(rows)
     add_segment_forces(found, alone, grains.contact, grains.last_dt, grains.cell)
     i, a = members[:, 0], members[:, 1]
-    distance = np.hypot(*way.T)
-    normal = way / distance[:, None]
-    arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[a] ** 2) / distance)
-    branch = way if share is None else way - share[:, None] * (d.position[members[:, 2]] - d.position[a])
-    table = grains.contact.table
-    material = np.zeros(d.count, np.uint8) if grains.material is None else grains.material
-    bodies = Bodies(i, a, np.full(count, NOBODY))
-    at = Places(
-        d.position[i] + arm[:, None] * normal,
-        normal,
-        d.position[i],
-        branch,
-        d.radius[i] + d.radius[a] - distance if overlap is None else overlap,
-    )
-    return listed(
-        bodies,
-        at,
-        found.force[1::each],
-        found.torque.reshape(-1, each)[:, :2],
-        memory[:, 0],
-        table[material[i], material[a], MU],
-    )
+    branch = None if share is None else way - share[:, None] * (d.position[members[:, 2]] - d.position[a])
+    loads = found.force[1::each], found.torque.reshape(-1, each)[:, :2], memory[:, 0]
+    return between(grains, i, a, way, loads, branch, overlap)
 
 
 def bond_contacts(grains: State, own: BondList) -> Contacts:

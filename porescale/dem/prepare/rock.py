@@ -32,7 +32,7 @@ from porescale.dem.prepare.tessellate import Corner, delaunay, shrunk, voronoi
 Kind = Literal["discs", "triangles", "cells"]
 
 KINDS = ("discs", "triangles", "cells")
-BEYOND = 0.1  # of the height: how far plates stand out above and below
+BEYOND = 0.1  # of the length of a plate's side of the sample: how far it stands out at both ends
 NEAR = 0.5  # of the gap, skin of lists of polygons: half a side long it lists twice to three times as many, for bodies
 #             that hardly pass each other
 REST = Moved()
@@ -113,18 +113,15 @@ def rock(
     if kind == "discs":
         thickness, frames = 0.5 * float(packing.radius.mean()), []
         discs = make_discs(packing.position, packing.radius, density)
-        plates = _plates(lower, upper, thickness, thickness, density)
+        plates = plates_beside(lower, upper, thickness, thickness, density)
         grains = framed(discs, plates, law, _open(lower, upper), rule=rule)
     else:
         if not (gap > 0.0 and pressed > 0.0):
             bad, name = (gap, "gap") if not gap > 0.0 else (pressed, "pressed")
             raise InputError(Fault(name, bad, "of polygons", "m", "> 0"))
         thickness = 0.5 * (gap + pressed)
-        parts = (voronoi if kind == "cells" else delaunay)(packing.position, lower, upper)
-        # A side shorter than the gap would be hidden behind the thickness of its neighbours.
-        left = [shrunk(part, 0.5 * gap, shortest=gap) for part in parts]
-        frames = [polygon(part, thickness, density) for part in left if part is not None]
-        plates = _plates(lower, upper, thickness, 0.5 * gap, density)
+        frames = [polygon(part, thickness, density) for part in blocks(kind, packing.position, lower, upper, gap)]
+        plates = plates_beside(lower, upper, thickness, 0.5 * gap, density)
         grains = framed(None, [*frames, *plates], law, _open(lower, upper), rule=rule, skin=NEAR * gap)
     made = bond(grains)
     if not made or grains.bonds is None:
@@ -168,14 +165,26 @@ def load(
     return Curve(time, strains, stress, broken.astype(np.int64), deep)
 
 
-def _plates(lower: Corner, upper: Corner, thickness: float, off: float, density: float) -> list[Frame]:
-    """Upright segments ``off`` (m) beside the rectangle, left and right."""
-    out = BEYOND * (upper[1] - lower[1])
-    ends = (lower[1] - out, upper[1] + out)
-    return [
-        chain([(x, y) for y in ends], thickness, density, width=2.0 * max(thickness, off), long=True)
-        for x in (lower[0] - off, upper[0] + off)
-    ]
+def blocks(kind: str, at: Floats, lower: Corner, upper: Corner, gap: float) -> list[Floats]:
+    """Corners (k, 2) m of the cells, or triangles, of points ``at`` (n, 2) m in a rectangle, that stand ``gap`` (m)
+    apart."""
+    parts = (voronoi if kind == "cells" else delaunay)(at, lower, upper)
+    # A side shorter than the gap would be hidden behind the thickness of its neighbours.
+    left = (shrunk(part, 0.5 * gap, shortest=gap) for part in parts)
+    return [part for part in left if part is not None]
+
+
+def plates_beside(
+    lower: Corner, upper: Corner, thickness: float, off: float, density: float, *, axis: int = 0, material: int = 0
+) -> list[Frame]:
+    """Segments ``off`` (m) beside the rectangle, across ``axis``: left and right of it, or below and above."""
+    out = BEYOND * (upper[1 - axis] - lower[1 - axis])
+    made = []
+    for place in (lower[axis] - off, upper[axis] + off):
+        ends = np.array([(place, lower[1 - axis] - out), (place, upper[1 - axis] + out)])
+        points = ends if axis == 0 else ends[:, ::-1]
+        made.append(chain(points, thickness, density, width=2.0 * max(thickness, off), long=True, material=material))
+    return made
 
 
 def _open(lower: Corner, upper: Corner) -> Box:

@@ -11,12 +11,10 @@ from porescale.common.record.model import Grid
 from porescale.common.record.open_run import open_run
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.surface import Surface, of_grains
-from porescale.piv.images.moving import grains_of, velocity_grid
+from porescale.piv.images.moving import SOLID, grains_of, velocity_grid
 
 MEASURED = "piv"
 """Name of the grid that a measured film keeps its fields in."""
-SOLID = 0.5
-"""Solid fraction from which a cell is taken for solid."""
 
 
 def field_of_run(folder: Path, time: float | None = None) -> Field:

@@ -58,23 +58,17 @@ def hexagonal_drag(
     return force * area / (nu * _flux_through(coupled, force, 40.0))
 
 
-def pair_drags(
-    cells: int = 50,
-    *,
-    relaxation_time: float = TAU,
-    method: Method = DEFAULT,
-) -> tuple[float, float, float]:
+def pair_drags(cells: int = 50, *, method: Method = DEFAULT) -> tuple[float, float, float]:
     """Drags Fx/(mu Ux) on discs of radius 0.2 and 0.12 at (0.3, 0.35) and (0.72, 0.7) of a periodic box of side 1.
 
     And the flow Uy/Ux that they turn aside: driven by a body force G along x.  The force on a disc is its load and G
     times the area it takes.
     """
-    nu = viscosity(relaxation_time)
+    nu = viscosity(TAU)
     force = 1e-8 * nu  # inertia turns the flow by a share of its Reynolds number
     place = np.array([(0.3, 0.35), (0.72, 0.7)]) * cells
     coupled = towed(
-        (cells, cells), place, np.array([0.2, 0.12]) * cells, relaxation_time=relaxation_time, sides=PERIODIC,
-        force=(force, 0.0), method=method,
+        (cells, cells), place, np.array([0.2, 0.12]) * cells, sides=PERIODIC, force=(force, 0.0), method=method,
     )  # fmt: skip
     flux = _flux_through(coupled, force, 60.0)
     taken = math.pi * coupled.saturated.covering_radius**2
@@ -83,20 +77,15 @@ def pair_drags(
 
 
 def array_torque(
-    cells: int,
-    solid_fraction: float,
-    *,
-    relaxation_time: float = TAU,
-    place: tuple[float, float] = (0.3, 0.1),
-    method: Method = DEFAULT,
+    cells: int, solid_fraction: float, *, place: tuple[float, float] = (0.3, 0.1), method: Method = DEFAULT
 ) -> float:
     """Torque T/(mu w) over the box, on discs of a square array that all turn at w; ``cells``² a disc."""
-    nu = viscosity(relaxation_time)
+    nu = viscosity(TAU)
     radius = cells * math.sqrt(solid_fraction / math.pi)
     spin = SLOW / radius
     coupled = towed(
-        (cells, cells), [(cells / 2 + place[0], cells / 2 + place[1])], radius, 0.0, spin,
-        relaxation_time=relaxation_time, sides=PERIODIC, method=method,
+        (cells, cells), [(cells / 2 + place[0], cells / 2 + place[1])], radius, 0.0, spin, sides=PERIODIC,
+        method=method,
     )  # fmt: skip
     torque = steady(coupled, lambda: float(coupled.fluid_torque[0]), (cells / (2 * math.pi)) ** 2 / nu)
     return -torque / (nu * spin * cells**2)

@@ -41,20 +41,20 @@ PLACES = ((0.1, 0.0, 0.0), (0.8, 0.3, 0.6), (1.4, 0.7, 0.2), (2.4, 0.5, 0.9))
 
 
 def closing(
-    gap: float, way: tuple[float, float, float], *, radius: float = 10.0, relaxation_time: float = TAU,
-    lubrication: bool = True, method: Method = DEFAULT,
+    gap: float, way: tuple[float, float, float], *, radius: float = 10.0, lubrication: bool = True,
+    method: Method = DEFAULT,
 ) -> float:  # fmt: skip
     """Force on two discs, ``gap`` radii apart, that close on each other, over 3 sqrt(2) pi mu (R/2g)^(3/2) V.
 
     way: angle (rad) and place in a cell;  radius: cells.
     """
     angle, *place = way
-    cells, nu = round(6 * radius), viscosity(relaxation_time)
+    cells, nu = round(6 * radius), viscosity(TAU)
     along = np.array([math.cos(angle), math.sin(angle)])
     middle, arm = np.array(place) + cells / 2, (1 + gap / 2) * radius * along
     coupled = towed(
         (cells, cells), [middle - arm, middle + arm], radius, [SLOW / 2 * along, -SLOW / 2 * along], density=2.0,
-        relaxation_time=relaxation_time, sides=PERIODIC, lubrication=lubrication, method=method,
+        sides=PERIODIC, lubrication=lubrication, method=method,
     )  # fmt: skip
 
     def load() -> float:

@@ -83,27 +83,21 @@ def oscillation_in_a_box(frequency: float, width: float = 10.0) -> complex:
 
 
 def shear_spin(
-    blockage: float = 0.1,
-    diameter: float = 10.0,
-    *,
-    relaxation_time: float = TAU,
-    reynolds: float = 0.01,
-    density: float = 1.0,
-    place: tuple[float, float] = (0.3, 0.0),
+    blockage: float = 0.1, diameter: float = 10.0, *, reynolds: float = 0.01, place: tuple[float, float] = (0.3, 0.0)
 ) -> float:
     """Spin over the shear rate of a free disc midway between walls that move apart, diameter over their distance given.
 
     reynolds: shear rate * d²/nu.  The channel is periodic, three heights long.
     """  # fmt: skip
     height = round(diameter / blockage)
-    nu = viscosity(relaxation_time)
+    nu = viscosity(TAU)
     rate = reynolds * nu / diameter**2
     wall = rate * height / 2
     sides = Sides("periodic", "periodic", "wall", "wall", top_speed=wall, bottom_speed=-wall)
     cells = 3 * height, height
     centre = cells[0] / 2 + place[0], height / 2 + place[1]
     coupled = towed(
-        cells, [centre], diameter / 2, spin=-rate / 2, relaxation_time=relaxation_time, sides=sides, density=density,
+        cells, [centre], diameter / 2, spin=-rate / 2, sides=sides, density=1.0,
     )  # fmt: skip
     y = np.arange(height)[:, None] + 0.5 - height / 2
     coupled.fluid.set_flow(rate * y * np.ones(cells[0]), 0.0)
@@ -112,22 +106,14 @@ def shear_spin(
     return -steady(coupled, lambda: float(discs.spin[0]), (height / (2 * math.pi)) ** 2 / nu) / rate
 
 
-def stream_drag(
-    frame: float,
-    *,
-    diameter: float = 10.0,
-    relaxation_time: float = TAU,
-    speed: float = 0.02,
-    steps: int = 2000,
-) -> Reals:
+def stream_drag(frame: float, *, diameter: float = 10.0, speed: float = 0.02, steps: int = 2000) -> Reals:
     """Drag on a disc that enters fluid at ``speed`` in a periodic box of six diameters, (steps,).
 
     frame 0: the disc stands and the fluid streams;  1: the fluid stands and the disc goes;  others between and beyond.
     """  # fmt: skip
     cells = round(6 * diameter)
     coupled = towed(
-        (cells, cells), [(cells / 2, cells / 2)], diameter / 2, (-frame * speed, 0.0), relaxation_time=relaxation_time,
-        sides=PERIODIC,
+        (cells, cells), [(cells / 2, cells / 2)], diameter / 2, (-frame * speed, 0.0), sides=PERIODIC,
     )  # fmt: skip
     coupled.fluid.set_flow((1 - frame) * speed, 0.0)
     coupled.inner_velocity[:] = coupled.grains.discs.velocity

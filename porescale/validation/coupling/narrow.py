@@ -41,8 +41,8 @@ def _together(rows: list[Measured]) -> Measured:
 
 
 def falling_drag(
-    fraction: float, ratio: float, *, relaxation_time: float = TAU, diameter: float = 10.0, degrees: float = 11.0,
-    reynolds: float = 0.2, method: Method = HELD,
+    fraction: float, ratio: float, *, diameter: float = 10.0, degrees: float = 11.0, reynolds: float = 0.2,
+    method: Method = HELD,
 ) -> float:  # fmt: skip
     """Drag F/(mu U) of the discs of a square array, of density ``ratio``, that fall freely at an angle to the grid.
 
@@ -50,13 +50,13 @@ def falling_drag(
     Reynolds number of a disc.
     """
     cells = round(diameter * math.sqrt(math.pi / (4 * fraction)))
-    radius, nu = cells * math.sqrt(fraction / math.pi), viscosity(relaxation_time)
+    radius, nu = cells * math.sqrt(fraction / math.pi), viscosity(TAU)
     speed = reynolds * nu / (2 * radius)
     along = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
     weight = SQUARE[fraction] * nu * speed
     pull, against = weight / ((ratio - 1) * math.pi * radius**2) * along, -weight / cells**2 * along
     coupled = immersed(
-        (cells, cells), [(cells / 2, cells / 2)], radius, ratio, speed * along, relaxation_time=relaxation_time,
+        (cells, cells), [(cells / 2, cells / 2)], radius, ratio, speed * along,
         sides=("periodic", "periodic"), acceleration=(pull[0], pull[1]), force=(against[0], against[1]), method=method,
     )  # fmt: skip
     run(coupled.advance, math.ceil(cells**2 / nu))

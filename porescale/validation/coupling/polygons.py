@@ -17,7 +17,7 @@ from porescale.coupling.coverage.rows import make_patches
 from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
-from porescale.validation.coupling.setups import DEFAULT, NO_DISCS, PERIODIC, TAU, Method
+from porescale.validation.coupling.setups import NO_DISCS, PERIODIC, TAU
 from porescale.validation.coupling.towed import square_array_drag
 from porescale.validation.lbm.channels import run
 
@@ -51,27 +51,20 @@ def array_drag(
     corners: ArrayLike,
     cells: int,
     *,
-    relaxation_time: float = TAU,
     places: Sequence[tuple[float, float]] = ((0.125, 0.125), (0.125, 0.375), (0.375, 0.125), (0.375, 0.375)),
-    method: Method = DEFAULT,
     change: float = 1e-5,
 ) -> list[float]:
     """Drag F/(mu U) of a square array of a polygon (k, 2), in parts of the period, for each place in a cell.
 
     Driven by a body force G along x: the drag is G times the box, U the conserved flux.
     """
-    nu, found = viscosity(relaxation_time), []
+    nu, found = viscosity(TAU), []
     force = 1e-6 * nu
     for place in places:
-        fluid = Fluid(
-            cells, cells, relaxation_time, operator=method.operator, magic=method.magic, force=(force, 0.0),
-            sides=PERIODIC,
-        )  # fmt: skip
+        fluid = Fluid(cells, cells, TAU, force=(force, 0.0), sides=PERIODIC)
         body = Polygons([cells * np.asarray(corners, float)])
         body.centre[0] = 0.5 * cells + place[0], 0.5 * cells + place[1]
-        wet = SaturatedCells(
-            fluid, np.zeros(0), solid_operator=method.solid_operator, weighting=method.weighting, polygons=body
-        )  # fmt: skip
+        wet = SaturatedCells(fluid, np.zeros(0), polygons=body)
         flux, before = 0.0, math.nan
         while not abs(flux - before) <= change * abs(flux):
             run(lambda: wet.advance(fluid, *NO_DISCS), max(50, math.ceil(cells**2 / (25.0 * nu))))  # noqa: B023
@@ -80,19 +73,14 @@ def array_drag(
     return found
 
 
-def array_torque(
-    corners: ArrayLike, cells: int, *, relaxation_time: float = TAU, place: tuple[float, float] = (0.3, 0.1),
-    method: Method = DEFAULT,
-) -> float:  # fmt: skip
+def array_torque(corners: ArrayLike, cells: int) -> float:
     """Torque over mu w and the box's area of a square array of a polygon, in parts of the period, that all turn with w
     and have not got anywhere."""
-    nu, spin = viscosity(relaxation_time), 1e-9
-    fluid = Fluid(cells, cells, relaxation_time, operator=method.operator, magic=method.magic, sides=PERIODIC)
+    nu, spin = viscosity(TAU), 1e-9
+    fluid = Fluid(cells, cells, TAU, sides=PERIODIC)
     body = Polygons([cells * np.asarray(corners, float)])
-    body.centre[0], body.spin[0] = (0.5 * cells + place[0], 0.5 * cells + place[1]), spin
-    wet = SaturatedCells(
-        fluid, np.zeros(0), solid_operator=method.solid_operator, weighting=method.weighting, polygons=body
-    )  # fmt: skip
+    body.centre[0], body.spin[0] = (0.5 * cells + 0.3, 0.5 * cells + 0.1), spin
+    wet = SaturatedCells(fluid, np.zeros(0), polygons=body)
     run(lambda: wet.advance(fluid, *NO_DISCS), math.ceil(cells**2 / nu))
     return -float(wet.polygon_load[0, 2]) / (nu * spin * cells**2)
 

@@ -14,7 +14,6 @@ from porescale.dem.forces.walls import Box
 from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
-from porescale.lbm.scales import Scales
 from porescale.validation.coupling import setups
 from porescale.validation.coupling.polygons import ellipse, plate, regular
 from porescale.validation.coupling.setups import LAW, TAU, in_box, lattice_units
@@ -36,30 +35,22 @@ def immersed_polygons(
     velocity: Sequence[tuple[float, float]] | None = None,
     spin: Sequence[float] | None = None,
     discs: Discs | None = None,
-    relaxation_time: float = TAU,
     sides: tuple[Kind, Kind] = ("wall", "wall"),
     acceleration: tuple[float, float] = (0.0, 0.0),
-    scales: Scales | None = None,
-    thickness: float = THICKNESS,
-    contact_steps: int = 4,
 ) -> Coupled:
-    """Polygons with these corners (cells, in the box) and discs in fluid at rest; units of ``scales``, by default 1.
+    """Polygons with these corners (cells, in the box) and discs in fluid at rest; lattice units.
 
-    sides: left and right, bottom and top;  thickness: cells.
+    sides: left and right, bottom and top.
     """
-    scales = scales or lattice_units(relaxation_time)
-    h = scales.spacing
+    scales = lattice_units(TAU)
     frames = [
         polygon(
-            h * np.asarray(each, float), h * thickness, density,
+            np.asarray(each, float), THICKNESS, density,
             velocity=velocity[n] if velocity else (0.0, 0.0), spin=spin[n] if spin else 0.0,
         )
         for n, each in enumerate(corners)
     ]  # fmt: skip
-    return in_box(
-        cells, lambda box: framed(discs, frames, LAW, box), scales, sides, contact_steps=contact_steps,
-        acceleration=acceleration,
-    )  # fmt: skip
+    return in_box(cells, lambda box: framed(discs, frames, LAW, box), scales, sides, acceleration=acceleration)
 
 
 def three(ratio: float, velocity: Sequence[tuple[float, float]], spin: Sequence[float], g: float) -> Coupled:

@@ -142,11 +142,7 @@ def square_array_drag(
 
 
 def channel_drag(
-    blockage: float,
-    diameter: float = 10.0,
-    *,
-    relaxation_time: float = TAU,
-    place: tuple[float, float] = (0.3, 0.0),
+    blockage: float, diameter: float = 10.0, *, place: tuple[float, float] = (0.3, 0.0)
 ) -> tuple[float, float]:
     """Drag F/(mu U) of a disc towed midway between walls at rest, and the blockage k = a/h that whole cells allow.
 
@@ -154,11 +150,8 @@ def channel_drag(
     """  # fmt: skip
     height = round(diameter / blockage)
     cells = 4 * height, height
-    coupled = towed(
-        cells, [(cells[0] / 2 + place[0], height / 2 + place[1])], diameter / 2, (SLOW, 0.0),
-        relaxation_time=relaxation_time,
-    )  # fmt: skip
-    nu = viscosity(relaxation_time)
+    coupled = towed(cells, [(cells[0] / 2 + place[0], height / 2 + place[1])], diameter / 2, (SLOW, 0.0))
+    nu = viscosity(TAU)
     force = steady(coupled, lambda: float(coupled.fluid_force[0, 0]), (height / (2 * math.pi)) ** 2 / nu)
     return -force / (nu * SLOW), diameter / height
 

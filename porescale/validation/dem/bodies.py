@@ -12,11 +12,9 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import elastic_pairs
 from porescale.dem.measures.network import moduli as elastic
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
-from porescale.dem.motion.periodic_cell import LOAD, Straining
 from porescale.validation.dem.momentum import momentum_drift
 from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at, slowest_wave, weights
 
@@ -39,9 +37,7 @@ def lattice(
     return Grains(make_discs(places, RADIUS, DENSITY), law, box, skin=skin)
 
 
-def random_cell(
-    law: Linear, seed: int, side: int = 6, skin: float | None = None, *, energy: bool = False
-) -> Grains:  # fmt: skip
+def random_cell(law: Linear, seed: int, side: int = 6, skin: float | None = None) -> Grains:
     """A periodic cell of side x side discs of radii 2:3, thrown about."""
     rng = np.random.default_rng(seed)
     grid = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2) + 0.5
@@ -49,10 +45,10 @@ def random_cell(
     size = RADIUS * rng.uniform(2.0 / 3.0, 1.0, side**2)
     speed = rng.normal(0.0, 1.0, (side**2, 2))
     box = Box((0.0, 0.0), (side * apart, side * apart), *("periodic",) * 4)
-    return Grains(make_discs(grid * apart, size, DENSITY, speed), law, box, skin=skin, energy=energy)
+    return Grains(make_discs(grid * apart, size, DENSITY, speed), law, box, skin=skin)
 
 
-def clumped_cell(law: Linear, seed: int, side: int = 6, *, energy: bool = False) -> Grains:
+def clumped_cell(law: Linear, seed: int, side: int = 6) -> Grains:
     """The cell of `random_cell` with a smaller disc bound to the rim of every third one."""
     rng = np.random.default_rng(seed)
     plain, few = random_cell(law, seed, side), side**2 // 3
@@ -63,20 +59,9 @@ def clumped_cell(law: Linear, seed: int, side: int = 6, *, energy: bool = False)
     )
     size = np.concatenate((d.radius, 0.5 * d.radius[:few]))
     speed = np.concatenate((d.velocity, d.velocity[:few]))
-    grains = Grains(make_discs(at, size, DENSITY, speed), law, plain.box, energy=energy)
+    grains = Grains(make_discs(at, size, DENSITY, speed), law, plain.box)
     grains.steering.bind([[k, side**2 + k] for k in range(few)], DENSITY)
     return grains
-
-
-def energy_of_bodies(grains: Grains) -> float:
-    """Kinetic energy relative to a strained cell, J/m: clumps by their own motion, not by that of their members."""
-    d, clumps = grains.discs, grains.steering.clumps
-    free = clumps.group < 0
-    parts = (
-        (d.mass[free], d.velocity[free], d.inertia[free], d.spin[free]),
-        (clumps.mass, clumps.velocity, clumps.inertia, clumps.spin),
-    )
-    return 0.5 * float(sum(m @ np.sum(v**2, axis=1) + i @ w**2 for m, v, i, w in parts))
 
 
 def clumped_cloud(seed: int = 1, friction: float = 0.5) -> Grains:
@@ -95,16 +80,6 @@ def clumped_cloud(seed: int = 1, friction: float = 0.5) -> Grains:
     discs.spin[:] = rng.normal(0.0, 100.0, 60)
     grains.steering.bind([[k, 40 + k] for k in range(20)], DENSITY)
     return grains
-
-
-def stored(grains: Grains) -> float:
-    """Elastic energy of a strained cell now, J/m."""
-    (width, _), (tilt, height) = grains.steering.edges()
-    now = Straining(width, height, tilt, 0.0, 0.0, 0.0, np.zeros(LOAD))
-    d, material = grains.discs, grains.material
-    grains.current_pairs()
-    parts = elastic_pairs(d.position, d.radius, material, grains.pair_arrays(), grains.contact, now)
-    return float(sum(parts))
 
 
 def dumbbell_bounce(

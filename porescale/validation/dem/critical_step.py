@@ -7,19 +7,18 @@ import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
-from porescale.dem.timestep import packing_limit
 from porescale.validation.dem.bodies import lattice
-from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, grows, law_at, row_on_floor, stability_limit
+from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, grows, law_at, on_floor, stability_limit
 
 VALIDATIONS = Validations()
 
 
-def critical_step(damping_ratio: float, tolerance: float = 2e-3, steps: int = 2000) -> float:
-    """Measured stability limit of a disc pressed on a floor, over sqrt(m/k), by bisection to ``tolerance``."""
+def critical_step(damping_ratio: float) -> float:
+    """Measured stability limit of a disc pressed on a floor, over sqrt(m/k), by bisection."""
     unit = math.sqrt(MASS / STIFFNESS)
     load = np.array([[0.0, -1e-3 * RADIUS * STIFFNESS]])
-    pressed = partial(row_on_floor, 1, -1e-3 * RADIUS, law_at(damping_ratio))
-    return stability_limit(0.1, 3.0, tolerance, lambda step: grows(pressed(), load, step * unit, steps))
+    pressed = partial(on_floor, law_at(damping_ratio), -1e-3 * RADIUS)
+    return stability_limit(0.1, 3.0, 2e-3, lambda step: grows(pressed(), load, step * unit, 2000))
 
 
 @VALIDATIONS.row(
@@ -59,12 +58,12 @@ def lattice_frequency(shear: float, waves: int = 48) -> float:
     return highest
 
 
-def lattice_critical_step(shear: float, cells: int = 6, tolerance: float = 3e-3) -> float:
-    """Measured stability limit of a periodic triangular lattice (cells x cells, even), over sqrt(m/k_n)."""
-    unit = math.sqrt(MASS / STIFFNESS)
+def lattice_critical_step(shear: float) -> float:
+    """Measured stability limit of a periodic triangular lattice of 6 x 6 discs, over sqrt(m/k_n)."""
+    cells, unit = 6, math.sqrt(MASS / STIFFNESS)
     law = Linear(STIFFNESS, 0.0, shear * STIFFNESS, friction=1e6)
     pressed, loads = partial(lattice, law, cells, skin=0.05 * RADIUS), np.zeros((cells**2, 2))
-    return stability_limit(0.1, 3.0, tolerance, lambda step: grows(pressed(), loads, step * unit, 2000))
+    return stability_limit(0.1, 3.0, 3e-3, lambda step: grows(pressed(), loads, step * unit, 2000))
 
 
 @VALIDATIONS.row(
@@ -78,9 +77,3 @@ def lattice_row() -> Measured:
     shears = (0.25, 0.8)
     exact = [2.0 / math.sqrt(lattice_frequency(shear)) for shear in shears]
     return Measured.relative(exact, [lattice_critical_step(shear) for shear in shears])
-
-
-def packing_step(shear: float) -> float:
-    """The limit that stable_step is built on, undamped, over sqrt(m/k_n)."""
-    law = Linear(STIFFNESS, 0.0, shear * STIFFNESS)
-    return packing_limit(law, MASS) / math.sqrt(MASS / STIFFNESS)

@@ -9,10 +9,8 @@ import numpy as np
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.hertz import Hertz
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import Box
-from porescale.dem.grains import Grains
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, grows, on_floor, stability_limit
+from porescale.validation.dem.restitution import bounce, bounce_pair, gain_at_a_wall
+from porescale.validation.dem.setups import MASS, RADIUS, grows, on_floor, stability_limit
 
 VALIDATIONS = Validations()
 
@@ -23,36 +21,15 @@ SPEEDS = (0.1, 1.0)
 ANTYPOV = "Antypov & Elliott 2011, EPL 94, 50004"
 
 
-def hertz_bounce(law: Hertz, speed: float, steps_per_contact: float, phases: int = 20) -> Floats:
-    """Restitution (phases,) on a floor, touching at evenly spread moments of a contact step."""
-    lasts = law.contact_time(MASS, RADIUS, speed)
-    dt = lasts / steps_per_contact
-    grains = on_floor(law, speed * dt * (np.arange(phases) + 0.5) / phases)
-    grains.discs.velocity[:, 1] = -speed
-    grains.step(dt, count=int(1.2 * steps_per_contact) + 3)
-    return grains.discs.velocity[:, 1] / speed
-
-
-def hertz_bounce_of_pair(law: Hertz, ratio: float, speed: float, steps_per_contact: float) -> float:
-    """Restitution of two discs of radius ratio ``ratio``, head on at an angle to the axes."""
-    mass, radius = MASS * ratio**2 / (1.0 + ratio**2), RADIUS * ratio / (1.0 + ratio)
-    dt = law.contact_time(mass, radius, speed) / steps_per_contact
-    n = np.array([math.cos(0.3), math.sin(0.3)])
-    box = Box((-1.0, -1.0), (1.0, 1.0), "open", "open", "open", "open")
-    discs = make_discs(np.array([(0.0, 0.0), (1.0 + ratio) * RADIUS * n]), [RADIUS, ratio * RADIUS], DENSITY)
-    discs.velocity[0] = speed * n
-    grains = Grains(discs, law, box)
-    grains.step(dt, count=int(1.2 * steps_per_contact) + 3)
-    return float((discs.velocity[1] - discs.velocity[0]) @ n) / speed
-
-
 def hertz_restitution(release: str) -> Measured:
     """Largest distance from the exact restitution over damping ratios, speeds and touch phases, and of a pair."""
     exact, found, worst = [], [], 0.0
     for ratio in RATIOS:
         law = Hertz(MODULUS, damping_ratio=ratio, release=release)
-        bounced = np.concatenate([hertz_bounce(law, speed, 1000.0) for speed in SPEEDS])
-        pair = hertz_bounce_of_pair(law, 2.0, 1.0, 1000.0)
+        bounced = np.concatenate(
+            [bounce(law, law.contact_time(MASS, RADIUS, speed), 1000.0, speed) for speed in SPEEDS]
+        )
+        pair = bounce_pair(law, law.contact_time(MASS * 4.0 / 5.0, RADIUS * 2.0 / 3.0, 1.0))
         exact.append(law.restitution())
         found.append(float(bounced.mean()))
         worst = max(worst, float(np.abs(bounced - exact[-1]).max()), abs(pair - exact[-1]))
@@ -81,13 +58,13 @@ def hertz_overlap() -> Measured:
     return hertz_restitution("overlap")
 
 
-def hertz_impact(law: Hertz, speed: float, steps_per_contact: float = 1000.0) -> tuple[float, float]:
-    """(deepest overlap, m; duration, s) of an impact on a floor, read to a step."""
-    dt = law.contact_time(MASS, RADIUS, speed) / steps_per_contact
-    grains = on_floor(law, 0.5 * speed * dt)
-    grains.discs.velocity[:, 1] = -speed
+def hertz_impact() -> tuple[float, float]:
+    """(deepest overlap, m; duration, s) of an undamped impact on a floor at 1 m/s, read to a step."""
+    dt = HERTZ.contact_time(MASS, RADIUS, 1.0) / 1000.0
+    grains = on_floor(HERTZ, 0.5 * dt)
+    grains.discs.velocity[:, 1] = -1.0
     deepest, lasted = 0.0, 0
-    for _ in range(int(1.5 * steps_per_contact)):
+    for _ in range(1500):
         grains.step(dt)
         overlap = RADIUS - float(grains.discs.position[0, 1])
         deepest = max(deepest, overlap)
@@ -104,15 +81,15 @@ def hertz_impact(law: Hertz, speed: float, steps_per_contact: float = 1000.0) ->
 def impact_row() -> Measured:
     """Deepest overlap (m) and duration (s) of an undamped impact at 1 m/s."""
     deepest = HERTZ.overlap_at(MASS, RADIUS, 1.0)
-    return Measured.relative((deepest, 2.94327518432201 * deepest), hertz_impact(HERTZ, 1.0))
+    return Measured.relative((deepest, 2.94327518432201 * deepest), hertz_impact())
 
 
-def hertz_critical_step(share: float, tolerance: float = 2e-3) -> float:
+def hertz_critical_step(share: float) -> float:
     """Measured stability limit (s) of a disc pressed on a floor to ``share`` of its radius, undamped, by bisection."""
     load = np.array([[0.0, -HERTZ.constant(RADIUS) * (share * RADIUS) ** 1.5]])
     unit = math.sqrt(MASS / (1.5 * HERTZ.constant(RADIUS) * math.sqrt(share * RADIUS)))
     pressed = partial(on_floor, HERTZ, -share * RADIUS)
-    return stability_limit(0.5 * unit, 3.0 * unit, tolerance, lambda step: grows(pressed(), load, step, 2000))
+    return stability_limit(0.5 * unit, 3.0 * unit, 2e-3, lambda step: grows(pressed(), load, step, 2000))
 
 
 @VALIDATIONS.row(
@@ -128,21 +105,11 @@ def hertz_critical() -> Measured:
     return Measured.relative(exact, [hertz_critical_step(share) for share in shares])
 
 
-def hertz_grazing_gain(law: Hertz, angles: Floats, speed: float = 1.0) -> Floats:
-    """Kinetic energy after over before, minus one, for impacts at ``angles`` (rad from the normal) on a floor.
-
-    One run for each angle, as steps follow the contact's duration, which depends on the normal speed.
-    """
-    gains = []
-    for angle in angles:
-        down, along = speed * math.cos(angle), speed * math.sin(angle)
-        dt = law.contact_time(MASS, RADIUS, down) / 1000.0
-        grains = on_floor(law, 0.5 * dt * down)
-        grains.discs.velocity[0] = along, -down
-        grains.step(dt, count=1300)
-        d = grains.discs
-        gains.append((float(d.velocity[0] @ d.velocity[0]) + 0.5 * (RADIUS * float(d.spin[0])) ** 2) / speed**2 - 1.0)
-    return np.array(gains)
+def hertz_gain(law: Hertz, angles: Floats) -> float:
+    """Largest `gain_at_a_wall`; steps follow the contact's duration, which depends on the speed along the normal."""
+    return max(
+        float(gain_at_a_wall(law, law.contact_time(MASS, RADIUS, math.cos(angle)), angle)[0]) for angle in angles
+    )
 
 
 @VALIDATIONS.row(
@@ -156,5 +123,5 @@ def hertz_grazing() -> Measured:
     angles = np.radians(np.concatenate((np.arange(0.0, 90.0, 6.0), (89.5, 89.9))))
     rubbing = replace(HERTZ, friction=0.3)
     damped = replace(rubbing, damping_ratio=0.1, tangential_damping_ratio=0.1)
-    gains = [float(hertz_grazing_gain(law, angles).max()) for law in (rubbing, damped)]
+    gains = [hertz_gain(law, angles) for law in (rubbing, damped)]
     return Measured(0.0, gains, max(0.0, *gains))

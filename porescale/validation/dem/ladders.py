@@ -6,10 +6,10 @@ from functools import partial
 from porescale.common.evidence.convergence import Ladders
 from porescale.validation.dem.bodies import pendulum_exact, pendulum_period
 from porescale.validation.dem.energy import impact_residual
-from porescale.validation.dem.hertz import HERTZ, hertz_bounce
+from porescale.validation.dem.hertz import HERTZ
 from porescale.validation.dem.restitution import bounce
 from porescale.validation.dem.segments import bouncing
-from porescale.validation.dem.setups import MASS, TANGENTIAL, law_at
+from porescale.validation.dem.setups import MASS, RADIUS, TANGENTIAL, law_at
 
 LADDERS = Ladders()
 STEPS = (50, 100, 200, 400)
@@ -31,7 +31,7 @@ RATIO = 0.2155
 def linear_impact(steps: float) -> float:
     """Linear spring and dashpot, let go where the force is zero."""
     law = law_at(RATIO)
-    return abs(float(bounce(law, steps).mean()) - law.restitution(MASS))
+    return abs(float(bounce(law, law.contact_time(MASS), steps).mean()) - law.restitution(MASS))
 
 
 @LADDERS.ladder(
@@ -46,7 +46,7 @@ def linear_impact(steps: float) -> float:
 def hertz_impact(steps: float) -> float:
     """Damping ratio 0.2155, 1 m/s."""
     law = replace(HERTZ, damping_ratio=RATIO)
-    return abs(float(hertz_bounce(law, 1.0, steps).mean()) - law.restitution())
+    return abs(float(bounce(law, law.contact_time(MASS, RADIUS, 1.0), steps).mean()) - law.restitution())
 
 
 @LADDERS.ladder(

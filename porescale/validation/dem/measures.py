@@ -68,9 +68,12 @@ def column_stress(grains: Grains, width: float) -> tuple[Floats, Floats]:
     return np.array(measured), pushed[1:] / width
 
 
-def pressed_lattice(strain: float = 1e-3, cells: int = 6, stretch: float = 0.0) -> Grains:
-    """The `lattice` of frictionless discs, compressed by ``strain``, its contacts listed."""
-    grains = lattice(Linear(lab.STIFFNESS), cells, strain, stretch, skin=0.05 * lab.RADIUS)
+STRAIN = 1e-3
+
+
+def pressed_lattice(stretch: float = 0.0) -> Grains:
+    """The `lattice` of frictionless discs, 6 x 6, compressed by STRAIN, its contacts listed."""
+    grains = lattice(Linear(lab.STIFFNESS), 6, STRAIN, stretch, skin=0.05 * lab.RADIUS)
     grains.refresh()
     return grains
 
@@ -86,11 +89,11 @@ def lattice_stress(grains: Grains) -> tuple[Floats, float, Fabric]:
     )
 
 
-def strained_stress(clumps: bool, seed: int = 3) -> tuple[Floats, Floats]:
+def strained_stress(clumps: bool) -> tuple[Floats, Floats]:
     """Love-Weber stress (Pa) of a rectangle as large as a dense cell strained in all ways, somewhere across its sides,
     and the stress of contacts that the cell works with in its next step, (2, 2) each."""
     law = Linear(lab.STIFFNESS, 20.0, 0.5 * lab.STIFFNESS, 10.0, 0.5)
-    grains = (clumped_cell if clumps else random_cell)(law, seed)
+    grains = (clumped_cell if clumps else random_cell)(law, 3)
     dt = grains.stable_step()
     grains.steering.strain_cell(xx=-0.18 / (900 * dt), yy=-0.14 / (900 * dt), xy=0.35 / (900 * dt))
     grains.step(dt, count=900)
@@ -101,10 +104,10 @@ def strained_stress(clumps: bool, seed: int = 3) -> tuple[Floats, Floats]:
     return found, -grains.steering.load[:4].reshape(2, 2) / (width * height)
 
 
-def pressed_lattice_stress(strain: float = 1e-3) -> float:
-    """Exact pressure (Pa) of that lattice: three contacts F = 2 r k strain with branch l = 2 r (1 - strain) per disc on
-    l² sqrt(3)/2, sum of F l n n = 3/2 F l: p = sqrt(3) F/l = sqrt(3) k strain/(1 - strain)."""
-    return math.sqrt(3.0) * lab.STIFFNESS * strain / (1.0 - strain)
+def pressed_lattice_stress() -> float:
+    """Exact pressure (Pa) of that lattice: three contacts F = 2 r k STRAIN with branch l = 2 r (1 - STRAIN) per disc on
+    l² sqrt(3)/2, sum of F l n n = 3/2 F l: p = sqrt(3) F/l = sqrt(3) k STRAIN/(1 - STRAIN)."""
+    return math.sqrt(3.0) * lab.STIFFNESS * STRAIN / (1.0 - STRAIN)
 
 
 def heap(seed: int = 2) -> Grains:
@@ -119,10 +122,10 @@ def heap(seed: int = 2) -> Grains:
     return grains
 
 
-def heap_fields(grains: Grains, cells: float, width: float = 0.03, *, conserve: bool = False) -> CoarseGrained:
+def heap_fields(grains: Grains, cells: float, width: float = 0.03) -> CoarseGrained:
     """Fields of a heap at ``cells`` cells a ``width`` (m), on a raster that reaches a width beyond all of it."""
     raster = Raster.over((-width, -width), (0.2 + width, 0.3), width / cells, width)
-    return CoarseGrained(raster, grains.discs, contacts(grains), conserve=conserve)
+    return CoarseGrained(raster, grains.discs, contacts(grains), conserve=False)
 
 
 def totals(grains: Grains, *, conserve: bool = True) -> Floats:

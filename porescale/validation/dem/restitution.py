@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
 from porescale.dem.measures.survey import kinetic_energy
-from porescale.validation.dem.setups import APART, MASS, RADIUS, STIFFNESS, free, law_at, row_on_floor
+from porescale.validation.dem.setups import APART, MASS, RADIUS, STIFFNESS, free, law_at, on_floor
 
 VALIDATIONS = Validations()
 
@@ -21,33 +22,31 @@ RATIOS = (0.0, 0.05, 0.2155, 0.5, 0.9)
 CHUNG = "Chung & Ooi 2011 protocols, linear law in two dimensions"
 
 
-def bounce(law: Linear, steps_per_contact: float, phases: int = 20, speed: float = 1.0) -> Floats:
+def bounce(law: ContactLaw, lasts: float, steps_per_contact: float, speed: float = 1.0, phases: int = 20) -> Floats:
     """Restitution of a disc on a wall, (phases,), touching at evenly spread moments of a contact step.
 
-    The floor is approached from above without gravity; dt is the contact time over ``steps_per_contact``.
+    The floor is approached from above without gravity; a contact ``lasts`` (s) so many steps.
     """
-    lasts = law.contact_time(MASS)
     dt = lasts / steps_per_contact
-    grains = row_on_floor(phases, speed * dt * (np.arange(phases) + 0.5) / phases, law)
+    grains = on_floor(law, speed * dt * (np.arange(phases) + 0.5) / phases)
     grains.discs.velocity[:, 1] = -speed
     grains.step(dt, count=int(1.2 * steps_per_contact) + 3)
     return grains.discs.velocity[:, 1] / speed
 
 
-def bounce_pair(law: Linear, ratio: float, steps_per_contact: float, speed: float = 1.0) -> float:
-    """Restitution of two discs of radius ratio ``ratio``, head on at an angle to the axes."""
-    mass = MASS * ratio**2 / (1.0 + ratio**2)
-    dt = law.contact_time(mass) / steps_per_contact
+def bounce_pair(law: ContactLaw, lasts: float) -> float:
+    """Restitution of two discs of radius ratio 2, head on at 1 m/s at an angle to the axes; a contact ``lasts`` (s)
+    1000 steps."""
     n = np.array([math.cos(0.3), math.sin(0.3)])
-    grains = free([(0.0, 0.0), (1.0 + ratio) * RADIUS * n], law, [RADIUS, ratio * RADIUS])
-    grains.discs.velocity[0] = speed * n
-    grains.step(dt, count=int(1.2 * steps_per_contact) + 3)
-    return float((grains.discs.velocity[1] - grains.discs.velocity[0]) @ n) / speed
+    grains = free([(0.0, 0.0), 3.0 * RADIUS * n], law, [RADIUS, 2.0 * RADIUS])
+    grains.discs.velocity[0] = n
+    grains.step(lasts / 1000.0, count=1203)
+    return float((grains.discs.velocity[1] - grains.discs.velocity[0]) @ n)
 
 
 def _restitution(release: str, ratios: tuple[float, ...]) -> Measured:
     laws = [law_at(h, release) for h in ratios]
-    bounced = [bounce(law, 1000.0) for law in laws]
+    bounced = [bounce(law, law.contact_time(MASS), 1000.0) for law in laws]
     exact = [law.restitution(MASS) for law in laws]
     worst = max(float(np.abs(e - x).max()) for e, x in zip(bounced, exact, strict=True))
     return Measured(exact, [float(e.mean()) for e in bounced], worst)
@@ -85,23 +84,23 @@ def restitution_pair() -> Measured:
     """Two discs of radius ratio 2, head on, at an angle to the axes."""
     mass = MASS * 4.0 / 5.0
     law = law_at(0.2155, mass=mass)
-    return Measured.absolute(law.restitution(mass), bounce_pair(law, 2.0, 1000.0))
+    return Measured.absolute(law.restitution(mass), bounce_pair(law, law.contact_time(mass)))
 
 
 def impact(
-    law: Linear, down: ArrayLike, along: ArrayLike, spin: ArrayLike, steps_per_contact: float = 1000.0
+    law: ContactLaw, lasts: float, down: ArrayLike, along: ArrayLike, spin: ArrayLike
 ) -> tuple[Floats, Floats, Floats]:
     """Speed up, along and spin of discs once they have hit a floor with ``down``, ``along`` (n,) m/s, ``spin`` (n,)
-    rad/s."""
+    rad/s; a contact ``lasts`` (s) 1000 steps."""
     fall, slide, turn = np.broadcast_arrays(*(np.asarray(part, float) for part in (down, along, spin)))
-    dt = law.contact_time(MASS) / steps_per_contact
-    grains = row_on_floor(fall.size, 0.5 * fall * dt, law)
+    dt = lasts / 1000.0
+    grains = on_floor(law, 0.5 * fall * dt)
     discs = grains.discs
     # Discs of different speeds run for 1.3 contact times and must not touch.
-    run = 1.3 * law.contact_time(MASS) * float(np.abs(slide).max(initial=0.0))
+    run = 1.3 * lasts * float(np.abs(slide).max(initial=0.0))
     discs.position[:, 0] = np.arange(fall.size) * (APART + 2.0 * run)
     discs.velocity[:, 0], discs.velocity[:, 1], discs.spin[:] = slide, -fall, turn
-    grains.step(dt, count=int(1.3 * steps_per_contact) + 3)
+    grains.step(dt, count=1303)
     return discs.velocity[:, 1].copy(), discs.velocity[:, 0].copy(), discs.spin.copy()
 
 
@@ -117,7 +116,7 @@ def oblique() -> Measured:
     law = law_at(0.1, tangential_stiffness=0.25 * STIFFNESS, friction=0.3, tangential_damping=damped.damping)
     fall, slide = 0.01, 0.05
     unit = 0.3 * (1.0 + law.restitution(MASS)) * fall
-    _, along, spin = impact(law, fall, [slide, 0.0], [0.0, slide / RADIUS])
+    _, along, spin = impact(law, law.contact_time(MASS), fall, [slide, 0.0], [0.0, slide / RADIUS])
     found = (
         (slide - along[0]) / unit, -spin[0] * RADIUS / (2.0 * unit),
         -along[1] / unit, (slide - spin[1] * RADIUS) / (2.0 * unit),
@@ -125,17 +124,20 @@ def oblique() -> Measured:
     return Measured.relative((1.0, 1.0, 1.0, 1.0), found)
 
 
-def grazing_gain(law: Linear, angles: ArrayLike, against: str = "wall", speed: float = 1.0) -> Floats:
-    """Kinetic energy after over before, minus one, for impacts at ``angles`` (rad from the normal)."""
-    angle = np.asarray(angles, float)
-    if against == "wall":
-        up, along, spin = impact(law, speed * np.cos(angle), speed * np.sin(angle), 0.0)
-        return (up**2 + along**2 + 0.5 * (RADIUS * spin) ** 2) / speed**2 - 1.0
+def gain_at_a_wall(law: ContactLaw, lasts: float, angles: ArrayLike) -> Floats:
+    """Kinetic energy after over before, minus one, for impacts on a floor at 1 m/s and ``angles`` (rad from the
+    normal); a contact ``lasts`` (s) 1000 steps."""
+    up, along, spin = impact(law, lasts, np.cos(angles), np.sin(angles), 0.0)
+    return up**2 + along**2 + 0.5 * (RADIUS * spin) ** 2 - 1.0
+
+
+def gain_of_a_pair(law: Linear, angles: Floats) -> Floats:
+    """The same of two discs, one at rest."""
     mass, gain = 0.5 * MASS, []
     dt = law.contact_time(mass) / 1000.0
-    for a in angle:
-        grains = free([(0.0, 0.0), (2.0 * RADIUS + 0.5 * dt * math.cos(a) * speed, 0.0)], law)
-        grains.discs.velocity[0] = speed * math.cos(a), speed * math.sin(a)
+    for a in angles:
+        grains = free([(0.0, 0.0), (2.0 * RADIUS + 0.5 * dt * math.cos(a), 0.0)], law)
+        grains.discs.velocity[0] = math.cos(a), math.sin(a)
         before = kinetic_energy(grains.discs)
         grains.step(dt, count=1300)
         gain.append(kinetic_energy(grains.discs) / before - 1.0)
@@ -153,8 +155,8 @@ def grazing() -> Measured:
     angles = np.radians(np.concatenate((np.arange(0.0, 90.0, 2.0), (89.5, 89.9))))
     rubbing: dict[str, Any] = {"tangential_stiffness": 0.25 * STIFFNESS, "friction": 0.3}
     gains = [
-        float(grazing_gain(law, angles, against).max())
+        float(gain.max())
         for law in (law_at(0.0, **rubbing), law_at(0.1, **rubbing, tangential_damping=300.0))
-        for against in ("wall", "disc")
+        for gain in (gain_at_a_wall(law, law.contact_time(MASS), angles), gain_of_a_pair(law, angles))
     ]
     return Measured(0.0, gains, max(0.0, *gains))

@@ -9,7 +9,7 @@ from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
-from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, on_floor, row_on_floor
+from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, on_floor
 
 VALIDATIONS = Validations()
 
@@ -20,9 +20,9 @@ def rubbing(friction: float) -> Linear:
     return replace(law, tangential_damping=0.25 * law.damping)
 
 
-def leaning(slope: float, gravity: float) -> Floats:
+def leaning(slope: float) -> Floats:
     """Weight of a disc on an incline of ``slope`` (rad), along it and across, (1, 2) N/m."""
-    return MASS * gravity * np.array([[math.sin(slope), -math.cos(slope)]])
+    return MASS * GRAVITY * np.array([[math.sin(slope), -math.cos(slope)]])
 
 
 def released(law: Linear, weight: Floats, wait: float) -> tuple[float, float]:
@@ -41,15 +41,15 @@ def released(law: Linear, weight: Floats, wait: float) -> tuple[float, float]:
     )
 
 
-def slide_to_roll(friction: float, speed: float = 1.0, gravity: float = GRAVITY) -> tuple[float, float]:
-    """A disc set sliding on a floor without spin: (time when it stops slipping, s; final speed, m/s)."""
+def slide_to_roll(friction: float) -> tuple[float, float]:
+    """A disc set sliding on a floor at 1 m/s without spin: (time when it stops slipping, s; final speed, m/s)."""
     law = rubbing(friction)
-    grains = row_on_floor(1, -MASS * gravity / STIFFNESS, law)
-    weight = np.array([[0.0, -MASS * gravity]])
-    expected = speed / (3.0 * friction * gravity)
+    grains = on_floor(law, -MASS * GRAVITY / STIFFNESS)
+    weight = np.array([[0.0, -MASS * GRAVITY]])
+    expected = 1.0 / (3.0 * friction * GRAVITY)
     dt = grains.stable_step(steps_per_contact=20.0)
     discs = grains.discs
-    discs.velocity[0, 0] = speed
+    discs.velocity[0, 0] = 1.0
     slipping = 0.0
     steps = int(1.5 * expected / dt)
     for _ in range(steps):
@@ -70,20 +70,20 @@ def sliding_to_rolling() -> Measured:
     return Measured.relative((1.0 / (3.0 * 0.2 * GRAVITY), 2.0 / 3.0), slide_to_roll(0.2))
 
 
-def incline(slope: float, friction: float, gravity: float = GRAVITY, wait: float = 0.02) -> tuple[float, float]:
+def incline(slope: float, friction: float, wait: float = 0.02) -> tuple[float, float]:
     """`released`: a disc on an incline of ``slope`` (rad)."""
-    return released(rubbing(friction), leaning(slope, gravity), wait)
+    return released(rubbing(friction), leaning(slope), wait)
 
 
-def incline_exact(slope: float, friction: float, gravity: float = GRAVITY) -> tuple[float, float]:
+def incline_exact(slope: float, friction: float) -> tuple[float, float]:
     """The same for the lever arm b = r - m g cos/k: rolling  m a = m g sin - f,  I w' = f b,  a = b w', or f = mu N."""
-    arm = RADIUS - MASS * gravity * math.cos(slope) / STIFFNESS
-    along = gravity * math.sin(slope) / (1.0 + 0.5 * (RADIUS / arm) ** 2)
-    rub = gravity * math.sin(slope) - along  # friction over mass that rolling takes
-    if rub <= friction * gravity * math.cos(slope):
+    arm = RADIUS - MASS * GRAVITY * math.cos(slope) / STIFFNESS
+    along = GRAVITY * math.sin(slope) / (1.0 + 0.5 * (RADIUS / arm) ** 2)
+    rub = GRAVITY * math.sin(slope) - along  # friction over mass that rolling takes
+    if rub <= friction * GRAVITY * math.cos(slope):
         return along, along / arm
-    rub = friction * gravity * math.cos(slope)
-    return gravity * math.sin(slope) - rub, 2.0 * rub * arm / RADIUS**2
+    rub = friction * GRAVITY * math.cos(slope)
+    return GRAVITY * math.sin(slope) - rub, 2.0 * rub * arm / RADIUS**2
 
 
 @VALIDATIONS.row(
@@ -115,17 +115,17 @@ def incline_arm() -> Measured:
     return Measured.relative(exact, (*incline(0.3, 0.5, wait=0.06), *incline(0.8, 0.1, wait=0.06)))
 
 
-def resisted_incline(slope: float, resistance: float, gravity: float = GRAVITY, wait: float = 0.05) -> float:
+def resisted_incline(slope: float, resistance: float, wait: float = 0.05) -> float:
     """Acceleration (m/s^2) of a disc that resists rolling on an incline of ``slope`` (rad), from ``wait`` s on."""
     law = replace(rubbing(0.9), rolling_friction=resistance, rolling_stiffness=0.25 * STIFFNESS)
     law = replace(law, rolling_damping=0.25 * law.damping)
-    return released(law, leaning(slope, gravity), wait)[0]
+    return released(law, leaning(slope), wait)[0]
 
 
-def resisted_acceleration(slope: float, resistance: float, gravity: float = GRAVITY) -> float:
+def resisted_acceleration(slope: float, resistance: float) -> float:
     """What it must be, with the lever arm a = r - m g cos/k: m a' = m g sin - f, I w' = f a - mu_r r N, a' = a w'."""
-    reach = 1.0 - MASS * gravity * math.cos(slope) / (STIFFNESS * RADIUS)  # a/r
-    drive = gravity * (math.sin(slope) - resistance * math.cos(slope) / reach)
+    reach = 1.0 - MASS * GRAVITY * math.cos(slope) / (STIFFNESS * RADIUS)  # a/r
+    drive = GRAVITY * (math.sin(slope) - resistance * math.cos(slope) / reach)
     return max(drive, 0.0) / (1.0 + 0.5 / reach**2)
 
 

@@ -28,7 +28,7 @@ APART = 10.0 * RADIUS  # between discs that must not touch
 TANGENTIAL: dict[str, Any] = {"tangential_stiffness": 0.25 * STIFFNESS, "friction": 0.3}
 
 
-def free(discs_at: Any, law: Linear, radius: ArrayLike = RADIUS, floor: bool = False) -> Grains:
+def free(discs_at: Any, law: ContactLaw, radius: ArrayLike = RADIUS, floor: bool = False) -> Grains:
     """Discs at rest in an open box, with a floor at y = 0 if wanted."""
     discs = make_discs(discs_at, radius, DENSITY)
     low, high = discs.position.min(axis=0) - 1.0, discs.position.max(axis=0) + 1.0
@@ -38,12 +38,6 @@ def free(discs_at: Any, law: Linear, radius: ArrayLike = RADIUS, floor: bool = F
         left="open", right="open", top="open", bottom="solid" if floor else "open",
     )  # fmt: skip
     return Grains(discs, law, box)
-
-
-def row_on_floor(count: int, gaps: ArrayLike, law: Linear) -> Grains:
-    """``count`` discs side by side, ``gaps`` (m) above a floor (below zero: pressed into it)."""
-    x = APART * np.arange(count)
-    return free(np.column_stack((x, RADIUS + np.broadcast_to(np.asarray(gaps, float), (count,)))), law, floor=True)
 
 
 def on_floor(law: ContactLaw | Materials, gaps: ArrayLike, **options: Any) -> Grains:
@@ -73,11 +67,6 @@ def grows(grains: Grains, loads: Floats, dt: float, steps: int) -> bool:
         if not off < 10.0 * scale * 3.0:
             return True
     return False
-
-
-def relative(measured: ArrayLike, reference: ArrayLike) -> float:
-    """Largest |measured/reference - 1|."""
-    return float(np.max(np.abs(np.asarray(measured) / np.asarray(reference) - 1.0)))
 
 
 def stability_limit(low: float, high: float, tolerance: float, unstable: Callable[[float], bool]) -> float:

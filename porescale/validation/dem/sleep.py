@@ -42,9 +42,9 @@ def heap(seed: int = 1) -> tuple[Grains, Floats]:
     return grains, weights
 
 
-def asleep(grains: Grains, weights: Floats, share: float = SHARE, after: float = AFTER) -> Sleep:
+def asleep(grains: Grains, weights: Floats, share: float = SHARE) -> Sleep:
     """Allow the discs to sleep; returns their `Sleep`."""
-    grains.sleep = Sleep(grains, np.hypot(weights[:, 0], weights[:, 1]), share, after)
+    grains.sleep = Sleep(grains, np.hypot(weights[:, 0], weights[:, 1]), share, AFTER)
     return grains.sleep
 
 
@@ -58,14 +58,14 @@ class Slept:
     grains: Grains
 
 
-def struck(share: float = SHARE, speed: float = 0.2, seconds: float = 0.06, deaf: bool = False) -> Slept:
+def struck(speed: float = 0.2, seconds: float = 0.06, deaf: bool = False) -> Slept:
     """A sleeping heap is struck by its highest disc, thrown up; watched every millisecond.
 
     The force on a sleeper is the sum over the list of all contacts, taken before the step that judges it.
     deaf : sleepers do not wake, for the sake of comparison.
     """
     grains, weights = heap()
-    sleep, weight = asleep(grains, weights, share), np.hypot(weights[:, 0], weights[:, 1])
+    sleep, weight = asleep(grains, weights, SHARE), np.hypot(weights[:, 0], weights[:, 1])
     dt = grains.stable_step()
     grains.step(dt, weights, count=round(20 * AFTER / dt))
     if deaf:

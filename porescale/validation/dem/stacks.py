@@ -40,7 +40,7 @@ def static_stack() -> Measured:
     return Measured.relative(list(range(1, 11)), stack(10))
 
 
-def unlike_stack(gravity: float = GRAVITY) -> Floats:
+def unlike_stack() -> Floats:
     """Overlaps over m g: floor of steel under a disc of rubber, under one of steel, (2,) m/N per metre, at rest."""
     soft = 1e-3 * STIFFNESS  # of friction and rolling, which have nothing to do in a stack
     steel, rubber = (
@@ -52,9 +52,9 @@ def unlike_stack(gravity: float = GRAVITY) -> Floats:
     box = Box((-1.0, 0.0), (1.0, 1.0), "open", "open", top="open")
     grains = Grains(discs, laws, box, material=[1, 0])
     dt, slowest = grains.stable_step(), 0.6 * math.sqrt(0.18 * STIFFNESS / MASS)
-    grains.step(dt, weights(2, gravity), None, int(60.0 / (slowest * dt)), 2.0 * slowest)
+    grains.step(dt, weights(2, GRAVITY), None, int(60.0 / (slowest * dt)), 2.0 * slowest)
     y = discs.position[:, 1]
-    return np.array([RADIUS - y[0], 2.0 * RADIUS - (y[1] - y[0])]) / (MASS * gravity)
+    return np.array([RADIUS - y[0], 2.0 * RADIUS - (y[1] - y[0])]) / (MASS * GRAVITY)
 
 
 @VALIDATIONS.row(

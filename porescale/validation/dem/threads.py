@@ -17,13 +17,12 @@ from porescale.validation.dem.setups import DENSITY, RADIUS, STIFFNESS, TANGENTI
 VALIDATIONS = Validations()
 
 
-def dense_block(law: ContactLaw, energy: bool, seed: int = 2, shuffled: bool = True) -> Grains:
+def dense_block(law: ContactLaw, energy: bool, seed: int = 2) -> Grains:
     """Just enough discs for threads, pressed together, moving, spinning and numbered at random."""
     rng = np.random.default_rng(seed)
     side = math.ceil(math.sqrt(sweep.SERIAL_BELOW + 1))
     grid = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)
-    if shuffled:
-        grid = rng.permutation(grid)
+    grid = rng.permutation(grid)
     apart = 1.96 * RADIUS
     size = len(grid)
     discs = make_discs(

@@ -37,23 +37,14 @@ def _amplitude(fluid: Fluid) -> float:
 
 
 def shear_layers(
-    operator: str,
-    *,
-    cells: int = 128,
-    reynolds: float = 1e4,
-    speed: float = 0.05,
-    passages: float = 2.0,
-    smagorinsky: float = 0.0,
+    operator: str, *, cells: int = 128, reynolds: float = 1e4, speed: float = 0.05, passages: float = 2.0
 ) -> Reals:
     """Kinetic energy over that at the start, at ten times, (10,), of two thin shear layers that roll up.
 
     Minion & Brown 1997: u = tanh(80 (y - 1/4)) or tanh(80 (3/4 - y)), v = 0.05 sin(2 pi (x + 1/4)) in a periodic unit
     square, Re = speed * side / viscosity.  passages: time in units of side/speed.
     """  # fmt: skip
-    fluid = Fluid(
-        cells, cells, relaxation_time(speed * cells / reynolds), operator=operator, sides=PERIODIC,
-        smagorinsky=smagorinsky,
-    )  # fmt: skip
+    fluid = Fluid(cells, cells, relaxation_time(speed * cells / reynolds), operator=operator, sides=PERIODIC)
     y, x = (np.mgrid[0:cells, 0:cells] + 0.5) / cells
     ux = speed * np.tanh(80 * np.where(y < 0.5, y - 0.25, 0.75 - y))
     uy = 0.05 * speed * np.sin(2 * math.pi * (x + 0.25))

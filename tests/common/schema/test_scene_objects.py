@@ -12,11 +12,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import Fault
 from porescale.common.schema.diff import diff
 from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.scene_file import parse_setting, setting_text
 from porescale.common.schema.sections import Section, load, quantity, validate
+from tests.reference.scenes import refusals
 
 
 class Probe(Section):
@@ -45,23 +46,16 @@ class Scene(SceneBase):
     probe: tuple[Probe, ...] = ()
 
 
-def lines(act: Any) -> list[str]:
-    """The faults that ``act`` raises, one line each."""
-    with pytest.raises(InputError) as caught:
-        act()
-    return [fault.line() for fault in caught.value.faults]
-
-
 WRONG: dict[str, Any] = {"flud": {}, "fluid": {"spacin": 1, "velocity": ["1 kg", 2]}, "probe": [{"x": 3}, {"x": 0}]}
 
 
 def test_python_has_the_messages_of_files_every_fault_at_once() -> None:
-    found = lines(lambda: Scene(**WRONG))
-    assert found == lines(lambda: validate(Scene, WRONG))
+    found = refusals(lambda: Scene(**WRONG))
+    assert found == refusals(lambda: validate(Scene, WRONG))
     assert "fluid.spacin = 1: unknown key; did you mean 'spacing'?" in found
     assert len(found) == 5  # the spacing is missing, too
-    assert lines(lambda: Fluid(spacin=1, spacing=1)) == ["spacin = 1: unknown key; did you mean 'spacing'?"]
-    assert lines(lambda: Scene(probe=[{"x": 2}], fluid={"spacing": 0.5})) == [
+    assert refusals(lambda: Fluid(spacin=1, spacing=1)) == ["spacin = 1: unknown key; did you mean 'spacing'?"]
+    assert refusals(lambda: Scene(probe=[{"x": 2}], fluid={"spacing": 0.5})) == [
         "fluid.velocity: is of a spacing that is none",
         "probe[0].x = 2 m: is out of range (allowed: >= 0 and <= 1 m); give the place in this range",
     ]
@@ -93,12 +87,12 @@ def test_sections_tables_arrays_and_texts_make_the_same_scene() -> None:
 
 def test_a_scene_does_not_change() -> None:
     scene = Scene(fluid={"spacing": 1e-3})
-    assert lines(lambda: setattr(scene.fluid, "spacing", 2.0)) == [
+    assert refusals(lambda: setattr(scene.fluid, "spacing", 2.0)) == [
         "spacing = 2.0: cannot be assigned, a scene never changes; "
         'make a changed copy, scene.with_({"SECTION.spacing": VALUE})'
     ]
-    assert "did you mean 'spacing'" in lines(lambda: setattr(scene.fluid, "spacin", 2.0))[0]
-    assert "with_" in lines(lambda: delattr(scene, "title"))[0]
+    assert "did you mean 'spacing'" in refusals(lambda: setattr(scene.fluid, "spacin", 2.0))[0]
+    assert "with_" in refusals(lambda: delattr(scene, "title"))[0]
     assert scene.fluid.spacing == 1e-3
 
 
@@ -118,11 +112,11 @@ def test_a_changed_copy_has_the_messages_of_settings(tmp_path: Path) -> None:
         ("flud.spacing", 1),
         ("fluid", 3),
     ):
-        asked = lines(lambda key=key, value=value: load(file, Scene, overrides=[setting_text(key, value)]))
-        told = lines(lambda key=key, value=value: scene.with_({key: value}))
+        asked = refusals(lambda key=key, value=value: load(file, Scene, overrides=[setting_text(key, value)]))
+        told = refusals(lambda key=key, value=value: scene.with_({key: value}))
         assert told == [line.removeprefix("--set: ") for line in asked]
-    assert lines(lambda: scene.with_({"no key": 1})) == ["'no key': is not section.key; write it as \"time.end\""]
-    assert len(lines(lambda: scene.with_({"fluid.spacing": 3, "probe[0].x": -1, "titel": "a"}))) == 3
+    assert refusals(lambda: scene.with_({"no key": 1})) == ["'no key': is not section.key; write it as \"time.end\""]
+    assert len(refusals(lambda: scene.with_({"fluid.spacing": 3, "probe[0].x": -1, "titel": "a"}))) == 3
 
 
 def test_sections_come_and_go() -> None:
@@ -131,11 +125,11 @@ def test_sections_come_and_go() -> None:
     assert full == Scene(title="bare", fluid={"spacing": 0.25}, probe=[{"x": 0.5}, {"x": 0.75, "name": "b"}])
     assert full.with_({"fluid": None, "probe": None}) == bare
     assert bare.with_({"fluid": None, "fluid.spacing": None}) == bare
-    assert lines(lambda: full.with_({"fluid.spacing": None})) == [
+    assert refusals(lambda: full.with_({"fluid.spacing": None})) == [
         "fluid.spacing: is missing (allowed: > 0 and <= 1 m); add spacing = … (cell size)"
     ]
-    assert lines(lambda: full.with_({"fluid.spacin": None}))[0].startswith("fluid.spacin: unknown key; did you mean")
-    assert "cannot be taken out" in lines(lambda: full.with_({"probe[0]": None}))[0]
+    assert refusals(lambda: full.with_({"fluid.spacin": None}))[0].startswith("fluid.spacin: unknown key; did you mean")
+    assert "cannot be taken out" in refusals(lambda: full.with_({"probe[0]": None}))[0]
 
 
 def test_names_of_files_go_on_meaning_the_same_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -198,7 +192,7 @@ def test_a_scene_is_saved_whole_or_not_at_all(tmp_path: Path) -> None:
     scene = Scene(fluid={"spacing": 0.1})
     file = scene.save(tmp_path / "a.toml")
     before = file.read_bytes()
-    assert lines(lambda: scene.save(file)) == [f"{file}: exists already; name another file, or give overwrite=True"]
+    assert refusals(lambda: scene.save(file)) == [f"{file}: exists already; name another file, or give overwrite=True"]
     assert file.read_bytes() == before
     scene.with_({"title": "b"}).save(file, overwrite=True)
     assert load(file, Scene).title == "b"
@@ -225,7 +219,7 @@ def test_the_difference_of_two_scenes_key_by_key() -> None:
     assert "&lt;b&gt;" in diff(a, b, Scene)._repr_html_()
     card = SimpleNamespace(card={"scene": b.to_dict(), "scene_file": None})
     assert diff(a, card, Scene) == diff(a, b, Scene)
-    assert "is neither a scene" in lines(lambda: diff(a, 3, Scene))[0]
+    assert "is neither a scene" in refusals(lambda: diff(a, 3, Scene))[0]
 
 
 def test_what_a_scene_shows_of_itself_is_short() -> None:

@@ -9,6 +9,7 @@ from continuum_sph.builders.reports.time_report import PORE_WATER, step_seconds
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.look import look_of_scene
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.duration.expected import STEPS
 from porescale.common.schema.sections import scene_as_dict, validate
 
@@ -18,16 +19,12 @@ SMALL = [[0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]]
 
 def scene(outline=WIDE, soil=None, depth=0.6, **changes):
     """Ground in a tank of 1 m by 0.8 m, with particles of 0.05 m, under water up to a ``depth``, m."""
-    table = {
-        "tank": {"width": 1.0, "height": 0.8, "lid": False},
+    given = {
         "water": {"sound_speed": 60.0, "column": [{"width": 1.0, "height": depth}] if depth else []},
         "soil": {"stiffness": 5e5, "permeability": 5e-3, "saturated": True, "body": [{"outline": outline}]}
         | (soil or {}),
-        "numerics": {"spacing": 0.05},
-        "time": {"end": 0.1},
-        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
     }
-    return validate(Scene, table | changes)
+    return tank_scene(1.0, 0.8, 0.05, 0.1, lid=False, **given | changes)
 
 
 def rows(given):

@@ -10,11 +10,10 @@ from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.report import report
 from continuum_sph.builders.reports.time_report import OPENING, PORE_WATER, step_seconds
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.skeleton import Frame
 from continuum_sph.soil import SoilFlow
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 from tests.reference.same_run import leaves
 
 BODY = {"outline": [[0.4, 0], [0.8, 0], [0.8, 0.4], [0.4, 0.4]]}
@@ -25,16 +24,12 @@ RIVER = {"name": "river", "left": 0, "right": 0.2, "level": 0.2}
 
 
 def scene(soil=None, **changes):
-    table = {
-        "tank": {"width": 1.2, "height": 0.5, "lid": False},
+    given = {
         "water": {"sound_speed": 25.0} | POOL,
         "soil": {"permeability": 0.05, "body": [BODY]} | (soil or {}),
         "reservoir": [RIVER],
-        "numerics": {"spacing": 0.05},
-        "time": {"end": 0.2},
-        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
     }
-    return validate(Scene, table | changes)
+    return tank_scene(1.2, 0.5, 0.05, 0.2, every=0.1, lid=False, **given | changes)
 
 
 def test_held_ground_stays_and_water_enters_it():

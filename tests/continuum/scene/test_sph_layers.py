@@ -7,10 +7,9 @@ from continuum_sph.builders.parts.pore_water import pore_law
 from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from continuum_sph.water.smoothing import kernel_value
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 
 K, RATIO, FALL = 1e-3, 0.1, 0.2  # m/s; of the other piece; of the head, m
 WIDE, HIGH, ROWS = 0.5, 0.4, 8
@@ -22,16 +21,12 @@ def box(left, right, bottom, top):
 
 
 def scene(pieces, soil=None, **changes):
-    table = {
-        "tank": {"width": WIDE, "height": HIGH},
+    given = {
         "water": {"sound_speed": 100.0},
         "soil": {"held": True, "saturated": True, "permeability": K, "body": pieces} | (soil or {}),
         "face": [{"name": "high", "side": "left", "head": 1.0 + FALL}, {"name": "low", "side": "right", "head": 1.0}],
-        "numerics": {"spacing": SPACING},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
     }
-    return validate(Scene, table | changes)
+    return tank_scene(WIDE, HIGH, SPACING, every=0.1, **given | changes)
 
 
 def discharge(pieces):

@@ -7,6 +7,7 @@ from continuum_sph import build, check
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 
@@ -18,14 +19,8 @@ SUCTION = {"alpha": 4.0, "n": 3.0, "saturation": 0.5}
 
 def scene(*outlines, soil=None, **changes):
     """A block of soil in a tank of 1 m by 0.5 m, with particles of 0.05 m; water where ``changes`` have some."""
-    table = {
-        "tank": {"width": 1.0, "height": 0.5, "lid": False},
-        "soil": {"body": [{"outline": it} for it in outlines or (BLOCK,)]} | (soil or {}),
-        "numerics": {"spacing": 0.05},
-        "time": {"end": 0.1},
-        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
-    }
-    return validate(Scene, table | changes)
+    ground = {"body": [{"outline": it} for it in outlines or (BLOCK,)]} | (soil or {})
+    return tank_scene(1.0, 0.5, 0.05, 0.1, lid=False, **{"soil": ground} | changes)
 
 
 DRY, MOVING, HELD = {}, {"water": WATER}, {"water": WATER, "soil": {"held": True}}

@@ -9,14 +9,13 @@ from continuum_sph.builders.parts.sheet_pile import NAME
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import PACKAGE
-from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Seepage
 from continuum_sph.soil.stress import YY
 from continuum_sph.validation.seepage.saturated_box import saturated_box
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 from tests.reference.same_run import leaves
 
 OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]
@@ -24,16 +23,13 @@ OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]
 
 def scene(**changes):
     given = {
-        "tank": {"width": 0.3, "height": 0.5},
         "water": {"column": [{"width": 0.3, "height": 0.4}], "sound_speed": 80.0},
         "soil": {"stiffness": 1e6, "permeability": 1e-3, "body": [{"outline": OUTLINE}]},
         "numerics": {"spacing": 0.02, "artificial_viscosity": 0.1},
         "probe": [{"x": 0.15, "y": 0.1}],
         "level": [{"x": 0.15}],
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
     }
-    return validate(Scene, given | changes)
+    return tank_scene(0.3, 0.5, 0.02, **given | changes)
 
 
 def test_soft_water_is_warned_of_and_second_fluids_are_refused():

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
 from continuum_sph.soil.stress import YY
-from porescale.common.schema.sections import validate
+from continuum_sph.validation.tanks import tank_scene
 
 WIDE, GROUND, LEVEL, SPACING = 0.6, 0.5, 0.9, 0.05  # m
 SOIL = {"density": 1500.0, "porosity": 0.4, "body": [{"outline": [[0, 0], [WIDE, 0], [WIDE, GROUND], [0, GROUND]]}]}
@@ -16,17 +15,9 @@ ROUND_OFF = 1e-13
 
 def simulation(columns, **more):
     """Water in ``columns``, (bottom, top) each."""
-    table = {
-        "tank": {"width": WIDE, "height": 1.2, "lid": False},
-        "water": {
-            "sound_speed": 60.0,
-            "column": [{"width": WIDE, "bottom": low, "height": high - low} for low, high in columns],
-        },
-        "numerics": {"spacing": SPACING},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
-    }
-    return Simulation(validate(Scene, table | more))
+    column = [{"width": WIDE, "bottom": low, "height": high - low} for low, high in columns]
+    given = {"water": {"sound_speed": 60.0, "column": column}}
+    return Simulation(tank_scene(WIDE, 1.2, SPACING, every=0.1, lid=False, **given | more))
 
 
 def densities(made):

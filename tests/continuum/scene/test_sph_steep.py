@@ -5,8 +5,7 @@ import pytest
 
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
-from porescale.common.schema.sections import validate
+from continuum_sph.validation.tanks import tank_scene
 
 DENSITY, HIGH, TOE, BACK = 1600.0, 1.0, 0.3, 1.2  # kg/m³; of the face, of the ground before it and behind it, m
 WEIGHT = DENSITY * 9.81 * HIGH
@@ -18,14 +17,7 @@ def cut(run=0.0, water=None, **soil):
     corners = [[0, 0], [wide, 0], [wide, TOE], [BACK + run, TOE], [BACK, TOE + HIGH], [0, TOE + HIGH]]
     own = {"density": DENSITY, "stiffness": 200 * WEIGHT, "friction_angle": 0.0, "cohesion": WEIGHT,
            "body": [{"outline": corners}], "numerics": {"settle": 1.0}}  # fmt: skip
-    table = {
-        "tank": {"width": wide, "height": 1.6, "lid": False},
-        "soil": own | soil,
-        "numerics": {"spacing": 0.1},
-        "time": {"end": 2.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
-    }
-    return validate(Scene, table | ({"water": water} if water else {}))
+    return tank_scene(wide, 1.6, 0.1, 2.0, every=1.0, lid=False, soil=own | soil, **({"water": water} if water else {}))
 
 
 def moved(given):

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 from tests.reference.same_run import leaves
 
 HIGH, WIDE, ROWS = 0.4, 0.25, 8
@@ -17,20 +16,15 @@ SOUND = 283.0
 
 
 def scene(of=None, **soil):
-    outline = [[0, 0], [WIDE, 0], [WIDE, HIGH], [0, HIGH]]
     ground = {"saturated": True, "stress": "unconsolidated", "stiffness": M * 0.52 / 0.7, "elastic": True,
-              "permeability": K, "body": [{"outline": outline}]}  # fmt: skip
-    table = {
-        "tank": {"width": WIDE, "height": HIGH},
+              "permeability": K, "body": [level_ground(WIDE, HIGH)]}  # fmt: skip
+    given = {
         "water": {"sound_speed": SOUND},
         "soil": ground | soil,
         "face": [{"side": "lid", "head": HIGH}],
         "probe": [{"name": "floor", "x": 0.5 * WIDE, "y": 0.0}],
-        "numerics": {"spacing": HIGH / ROWS},
-        "time": {"end": 0.1},
-        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
     }
-    return validate(Scene, table | (of or {}))
+    return tank_scene(WIDE, HIGH, HIGH / ROWS, 0.1, **given | (of or {}))
 
 
 def floor(model):

@@ -8,23 +8,16 @@ from continuum_sph.builders.parts.soil import SoilPart
 from continuum_sph.builders.parts.watched import WatchedPart
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 
 UPPER = [[0.2, 0.2], [0.4, 0.2], [0.4, 0.4], [0.2, 0.4]]
 BODY = {"outline": [[0, 0], [0.4, 0], [0.4, 0.4], [0, 0.4]]}
 
 
 def scene(*watch, **changes):
-    table = {
-        "tank": {"width": 1.0, "height": 0.6, "lid": False},
-        "soil": {"stiffness": 1e6, "body": [BODY], "watch": list(watch)},
-        "numerics": {"spacing": 0.05},
-        "time": {"end": 0.2},
-        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
-    }
-    return validate(Scene, table | changes)
+    ground = {"stiffness": 1e6, "body": [BODY], "watch": list(watch)}
+    return tank_scene(1.0, 0.6, 0.05, 0.2, every=0.1, lid=False, **{"soil": ground} | changes)
 
 
 def test_a_watched_part_has_the_mean_displacement_of_what_was_in_its_outline():

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.pressure_face import UNSEEN, prescribe_pressure
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.state import P, X, Y
-from porescale.common.schema.sections import validate
 
 SPACING, SIDE = 0.05, 0.5
 GONE = 0.15  # spacings that water has gone out of the face; what stands behind it goes half as far
@@ -17,17 +16,10 @@ AMID = slice(4, 6)  # of ten columns, those that see no corner
 @pytest.fixture
 def water():
     """Full, held ground between two faces of one head, where nothing flows."""
-    table = {
-        "tank": {"width": SIDE, "height": SIDE},
-        "water": {"sound_speed": 50.0},
-        "soil": {"held": True, "saturated": True, "permeability": 1e-3,
-                 "body": [{"outline": [[0, 0], [SIDE, 0], [SIDE, SIDE], [0, SIDE]]}]},
-        "face": [{"side": "left", "head": 1.0}, {"side": "right", "head": 1.0}],
-        "numerics": {"spacing": SPACING},
-        "time": {"end": 0.1},
-        "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
-    }  # fmt: skip
-    return Simulation(validate(Scene, table)).flow.water
+    ground = {"held": True, "saturated": True, "permeability": 1e-3, "body": [level_ground(SIDE, SIDE)]}
+    faces = [{"side": "left", "head": 1.0}, {"side": "right", "head": 1.0}]
+    scene = tank_scene(SIDE, SIDE, SPACING, 0.1, water={"sound_speed": 50.0}, soil=ground, face=faces)
+    return Simulation(scene).flow.water
 
 
 def behind(water, gone, pressure):

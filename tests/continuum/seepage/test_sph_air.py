@@ -8,8 +8,8 @@ import pytest
 from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.seepage.air import TrappedAir
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.eos.adiabatic import AdiabaticGas
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.eos.printed import PrintedGas
@@ -18,20 +18,16 @@ from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 
 
 def scene(**changes):
     given = {
-        "tank": {"width": 0.2, "height": 0.5, "lid": False},
         "water": {"column": [{"bottom": 0.2, "width": 0.2, "height": 0.2}]},
-        "soil": {"stiffness": 1e5, "body": [{"outline": [[0, 0], [0.2, 0], [0.2, 0.2], [0, 0.2]]}]},
+        "soil": {"stiffness": 1e5, "body": [level_ground(0.2, 0.2)]},
         "air": {"density": 10.0, "pressure": 5e3},
         "numerics": {"spacing": 0.02, "tension": "cut"},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
     }
-    return validate(Scene, given | changes)
+    return tank_scene(0.2, 0.5, 0.02, lid=False, **given | changes)
 
 
 def test_air_resists_as_much_less_as_it_is_thinner():

@@ -2,13 +2,11 @@
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from continuum_sph.builders.parts.sheet_pile import NAME, beside, sheet_pile, steepness
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.pile import SheetPileSection
-from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.sheet_flow import longer, thickness_at_exit
 from continuum_sph.seepage.sheet_pile import (
     FOOT_GAIN,
@@ -22,7 +20,9 @@ from continuum_sph.seepage.sheet_pile import (
     keep_out,
     side_of,
 )
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.smoothing import CUBIC, kernel_value
+from porescale.common.core.errors import InputError
 from porescale.common.neighbors import PairList, square_lattice
 
 SPACING = 0.1
@@ -153,22 +153,18 @@ def test_a_list_goes_on_from_its_state():
 
 def scene(**more):
     """A scene with a pile."""
-    table = {
-        "tank": {"width": 1.5, "height": 1.0},
+    given = {
         "water": {"column": [{"width": 1.5, "height": 0.8}]},
-        "soil": {"body": [{"outline": [[0, 0], [1.5, 0], [1.5, 0.6], [0, 0.6]]}]},
+        "soil": {"body": [level_ground(1.5, 0.6)]},
         "pile": {"x": 0.75, "tip": 0.4},
-        "numerics": {"spacing": SPACING},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
     }
-    return Scene.model_validate(table | more)
+    return tank_scene(1.5, 1.0, SPACING, **given | more)
 
 
 def test_a_scene_has_room_for_its_pile():
     assert sheet_pile(scene().pile, SPACING) == PILE
     for wrong in ({"x": 0.2, "tip": 0.4}, {"x": 0.75, "tip": 0.9}):
-        with pytest.raises(ValidationError, match="pile"):
+        with pytest.raises(InputError, match="pile"):
             scene(pile=wrong)
 
 
@@ -207,7 +203,7 @@ def test_check_says_why_a_pile_has_no_exit_gradient_and_where_too_little_ground_
 
 
 def test_a_pile_stands_in_soil():
-    with pytest.raises(ValidationError, match="pile"):
+    with pytest.raises(InputError, match="pile"):
         scene(soil=None)
 
 

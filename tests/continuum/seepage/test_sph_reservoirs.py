@@ -9,30 +9,26 @@ from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
-from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import reservoir
+from continuum_sph.validation.tanks import tank_scene
 from continuum_sph.water.smoothing import RATIO
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import square_lattice
-from porescale.common.schema.sections import validate
 
 SPACING, ROUND = 0.1, 2.3e-16
 
 
 def scene(**changes):
     given = {
-        "tank": {"width": 0.8, "height": 0.3, "lid": False},
         "water": {"column": [{"width": 0.3, "height": 0.1}], "sound_speed": 30.0},
         "soil": {"stiffness": 2e5, "elastic": True, "permeability": 0.05,
                  "body": [{"outline": [[0.3, 0], [0.5, 0], [0.5, 0.25], [0.3, 0.25]]}]},
         "reservoir": [{"name": "upstream", "left": 0.0, "right": 0.2, "rise": [[0, 0.1], [0.02, 0.2]]},
                       {"name": "downstream", "left": 0.6, "right": 0.8, "level": 0.0}],
         "numerics": {"spacing": 0.02, "artificial_viscosity": 0.1, "shifting": 1.0, "tension": "cut"},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
     }  # fmt: skip
-    return validate(Scene, given | changes)
+    return tank_scene(0.8, 0.3, 0.02, lid=False, **given | changes)
 
 
 def off(bottom):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import INSIDE, LEAST_ROOM, LINES, POROSITY, SLIP_X, SLIP_Y, SOIL, find_enclosed
 from continuum_sph.seepage.overlap import Overlap, overlap_weights
 from continuum_sph.seepage.volume_excess import (
@@ -19,9 +18,9 @@ from continuum_sph.seepage.volume_excess import (
     room_before,
     take_up,
 )
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.smoothing import SUPPORT
 from continuum_sph.water.state import DIFFUSIVE, VOLUME, P
-from porescale.common.schema.sections import validate
 from tests.reference.continuum import seepage as slow
 
 eps = np.finfo(float).eps
@@ -140,16 +139,11 @@ def test_soil_that_has_left_the_tank_has_some_room_too():
 
 def held(depth: float, height: float, water: dict[str, Any], **more: Any) -> Simulation:
     """Ground of a ``depth`` (m) that is held, in a tank 0.4 m wide and of a ``height`` (m), with a column of water."""
-    outline = [[0.0, 0.0], [0.4, 0.0], [0.4, depth], [0.0, depth]]
-    scene = {
-        "tank": {"width": 0.4, "height": height, "lid": False},
-        "numerics": {"spacing": 0.02},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
-        "soil": {"stiffness": 2e6, "held": True, "permeability": 0.05, "body": [{"outline": outline}]},
+    given = {
+        "soil": {"stiffness": 2e6, "held": True, "permeability": 0.05, "body": [level_ground(0.4, depth)]},
         "water": {"column": [{"width": 0.4, "height": 0.3} | water]},
     }
-    return Simulation(validate(Scene, scene | more))
+    return Simulation(tank_scene(0.4, height, 0.02, lid=False, **given | more))
 
 
 def wetted() -> Simulation:

@@ -8,12 +8,11 @@ import pytest
 import continuum_sph
 from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.report import report
-from continuum_sph.scene.sections import Scene
 from continuum_sph.soil import Material, Rate
 from continuum_sph.soil.material import RATE_PACE, RATE_STRENGTH
 from continuum_sph.soil.plasticity import new_stress
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 from tests.reference.folders import CASES
 
 FAST = Rate(sin_friction=0.8, inertial_number=0.3, grain_diameter=1e-3)
@@ -75,12 +74,8 @@ def test_a_soil_without_a_rate_has_none_of_it():
 
 
 def scene(rate, **soil):
-    outline = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]
-    given = {"body": [{"outline": outline}], "friction_angle": "22 degree"} | soil
-    if rate is not None:
-        given["rate"] = rate
-    rest = {"numerics": {"spacing": 0.05}, "output": {"series_interval": 1.0, "snapshot_interval": 1.0}}
-    return validate(Scene, {"tank": {"width": 1, "height": 1}, "soil": given, "time": {"end": 1.0}} | rest)
+    given = {"body": [level_ground(1.0, 0.5)], "friction_angle": "22 degree", "rate": rate} | soil
+    return tank_scene(1.0, 1.0, 0.05, soil=given)
 
 
 def test_a_scene_names_its_rate():

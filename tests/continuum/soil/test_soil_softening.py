@@ -8,13 +8,12 @@ import pytest
 from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.soil import soil_law
 from continuum_sph.builders.report import report
-from continuum_sph.scene.sections import Scene
 from continuum_sph.soil import Material, Rate, Softening
 from continuum_sph.soil.material import RATE_STRENGTH, SOFTENED_STRAIN
 from continuum_sph.soil.plasticity import new_stress, strength
 from continuum_sph.soil.softening import band_width
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 
 FIRM = {"sin_friction": 0.5, "cohesion_intercept": 800.0, "sin_dilatancy": 0.2, "tension": 1000.0}
 SOFT = Softening(0.3, 200.0, 0.05)
@@ -71,12 +70,13 @@ def test_friction_of_the_fastest_flow_is_that_of_large_strains():
 
 
 def scene(softening, **soil):
-    outline = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]
-    given = {"body": [{"outline": outline}], "friction_angle": "22 degree", "cohesion": 50.0} | soil
-    if softening is not None:
-        given["softening"] = softening
-    rest = {"numerics": {"spacing": 0.05}, "output": {"series_interval": 1.0, "snapshot_interval": 1.0}}
-    return validate(Scene, {"tank": {"width": 1, "height": 1}, "soil": given, "time": {"end": 1.0}} | rest)
+    given = {
+        "body": [level_ground(1.0, 0.5)],
+        "friction_angle": "22 degree",
+        "cohesion": 50.0,
+        "softening": softening,
+    } | soil
+    return tank_scene(1.0, 1.0, 0.05, soil=given)
 
 
 def test_a_scene_names_its_softening_and_particles_have_its_slip():

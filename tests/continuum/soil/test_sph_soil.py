@@ -16,7 +16,7 @@ from continuum_sph.soil import material as soil_material
 from continuum_sph.soil import momentum as soil_momentum
 from continuum_sph.soil import plasticity as soil_plasticity
 from continuum_sph.soil import stress as soil_stress
-from continuum_sph.soil.gradient import inverse, velocity_gradients
+from continuum_sph.soil.gradient import FULL, NONE, velocity_gradients
 from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.plasticity import returned, strength
 from continuum_sph.soil.state import MASS, VOLUME, X
@@ -24,8 +24,10 @@ from continuum_sph.soil.stress import XX, YY, Straining, deform
 from continuum_sph.soil.tension import repel_under_tension
 from continuum_sph.validation.soil.element import Element
 from continuum_sph.validation.soil.setups import body, in_tank
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water import bundles, smoothing
 from continuum_sph.water.bundles import Neighbours
+from continuum_sph.water.kernel_correction import inverse
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError, Unstable
 from porescale.common.neighbors import square_lattice
@@ -40,17 +42,8 @@ SAND = Material(1e6, 1600.0)
 
 
 def scene(**soil):
-    ground = {"stiffness": 1e6, "body": [{"outline": [[0, 0], [0.4, 0], [0.4, 0.4], [0, 0.4]]}]}
-    return validate(
-        Scene,
-        {
-            "tank": {"width": 1.0, "height": 0.6, "lid": False},
-            "soil": ground | soil,
-            "numerics": {"spacing": 0.05},
-            "time": {"end": 0.2},
-            "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
-        },
-    )
+    ground = {"stiffness": 1e6, "body": [level_ground(0.4, 0.4)]}
+    return tank_scene(1.0, 0.6, 0.05, 0.2, every=0.1, lid=False, soil=ground | soil)
 
 
 def block():
@@ -119,10 +112,10 @@ def test_kernels_run_as_plain_python(monkeypatch):
 
 
 def test_the_correction_is_the_inverse_where_moments_are_good_and_none_where_they_are_not():
-    xx, xy, yy, rest = inverse.py_func(0.9, 0.1, 0.8)
+    xx, xy, yy, rest = inverse.py_func(0.9, 0.1, 0.8, NONE, FULL)
     np.testing.assert_allclose(np.array([[xx, xy], [xy, yy]]) @ [[0.9, 0.1], [0.1, 0.8]], np.eye(2), atol=1e-14)
     assert rest == 0.0
-    assert inverse.py_func(0.2, 0.0, 0.9) == (1.0, 0.0, 1.0, 1.0)
+    assert inverse.py_func(0.2, 0.0, 0.9, NONE, FULL) == (1.0, 0.0, 1.0, 1.0)
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,9 @@ from pathlib import Path
 import pytest
 
 from continuum_sph.builders.parts.soil import soil_law
-from continuum_sph.scene.sections import Scene
 from continuum_sph.soil import Material
 from continuum_sph.soil.steadying import MOST, WEIGHTLESS, steadied
-from porescale.common.schema.sections import validate
+from continuum_sph.validation.tanks import level_ground, tank_scene
 
 SAND = Material(1e6, 1600.0)
 EPS = 2.0**-52
@@ -70,13 +69,7 @@ def test_soil_without_weight_has_constants():
 
 def scene(numerics):
     """A scene of ground of 0.3 m in a tank that is higher."""
-    body = [{"outline": [[0, 0], [0.4, 0], [0.4, 0.3], [0, 0.3]]}]
-    table = {
-        "tank": {"width": 1.0, "height": 0.5, "lid": False}, "soil": {"body": body, "numerics": numerics},
-        "numerics": {"spacing": 0.02},
-        "time": {"end": 1}, "output": {"snapshot_interval": 1, "series_interval": 1},
-    }  # fmt: skip
-    return validate(Scene, table)
+    return tank_scene(1.0, 0.5, 0.02, lid=False, soil={"body": [level_ground(0.4, 0.3)], "numerics": numerics})
 
 
 def test_a_scene_that_says_nothing_has_the_law_and_one_that_does_has_its_own():

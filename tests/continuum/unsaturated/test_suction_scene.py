@@ -8,14 +8,13 @@ from continuum_sph.builders.parts import suction
 from continuum_sph.builders.parts.suction import MoisturePart, retention_of
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.stress import YY
 from continuum_sph.unsaturated.pore_stress import borne
 from continuum_sph.unsaturated.richards import CONTENT, EFFECTIVE, HEAD, PRESSURE
+from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
 from tests.reference.same_run import leaves
 
 OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]
@@ -23,17 +22,9 @@ SUCTION = {"alpha": 5.0, "n": 3.0, "residual": 0.1, "water_table": 0.1}
 
 
 def scene(given=SUCTION, soil=None, **changes):
-    table = {
-        "tank": {"width": 0.3, "height": 0.4},
-        "water": {"sound_speed": 75.0},
-        "soil": {"stiffness": 1e6, "permeability": 1e-3, "body": [{"outline": OUTLINE}]} | (soil or {}),
-        "numerics": {"spacing": 0.02},
-        "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
-    }
-    if given is not None:
-        table["soil"]["suction"] = given
-    return validate(Scene, table | changes)
+    ground = {"stiffness": 1e6, "permeability": 1e-3, "body": [level_ground(0.3, 0.2)]} | (soil or {})
+    ground |= {} if given is None else {"suction": given}
+    return tank_scene(0.3, 0.4, 0.02, **{"water": {"sound_speed": 75.0}, "soil": ground} | changes)
 
 
 UNDER = {"reservoir": [{"left": 0, "right": 0.3, "bottom": 0.2, "level": 0.3}]}

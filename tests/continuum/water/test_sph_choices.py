@@ -89,9 +89,10 @@ def test_corrected_gradients_of_linear_fields_are_exact_in_disorder():
 
 
 def test_correction_fades_where_neighbours_lie_on_one_side():
-    assert inverse(1.0, 0.0, 1.0, NONE, FULL) == (1.0, 0.0, 1.0)
-    assert inverse(0.9, 0.0, 0.2, NONE, FULL) == (1.0, 0.0, 1.0)
-    xx, xy, yy = inverse(0.95, 0.05, 0.9, NONE, FULL)
+    assert inverse(1.0, 0.0, 1.0, NONE, FULL) == (1.0, 0.0, 1.0, 0.0)
+    assert inverse(0.9, 0.0, 0.2, NONE, FULL) == (1.0, 0.0, 1.0, 1.0)
+    xx, xy, yy, rest = inverse(0.95, 0.05, 0.9, NONE, FULL)
+    assert rest == 0.0
     assert np.array([[xx, xy], [xy, yy]]) @ [[0.95, 0.05], [0.05, 0.9]] == pytest.approx(np.eye(2), abs=4 * eps)
 
 

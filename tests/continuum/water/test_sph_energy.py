@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
 from porescale.common.evidence.overhead import bytes_of
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
-from porescale.common.schema.sections import validate
 
 SHIFTED = {"numerics": {"spacing": 0.1, "gradient": "corrected", "shifting": 2.0}}
 PULLED = {
@@ -24,12 +23,9 @@ ROWS = 2 * 6 * 8  # bytes of a particle's power and energy
 
 def made(energy, sections):
     """A column that falls, with or without a budget."""
-    table = {
-        "tank": {"width": 1.5, "height": 1.5}, "water": {"column": [{"width": 0.5, "height": 1.0}]},
-        "numerics": {"spacing": 0.1}, "time": {"end": 1.0},
-        "output": {"snapshot_interval": 1.0, "series_interval": 1.0} | energy,
-    }  # fmt: skip
-    return Simulation(validate(Scene, table | sections))
+    output = {"snapshot_interval": 1.0, "series_interval": 1.0} | energy
+    given = {"water": {"column": [{"width": 0.5, "height": 1.0}]}, "output": output}
+    return Simulation(tank_scene(1.5, 1.5, 0.1, **given | sections))
 
 
 def test_a_scene_that_does_not_ask_for_energies_has_no_budget():

@@ -41,6 +41,13 @@ def periodic_point_forces(x, y, length, height, shift=0.0):
     return xx, xy, yy
 
 
+def rings(centres, radii, share, points):
+    """Points of circles of `share` radii in every disc, (n * points, 2), and their arms from the centres."""
+    angle = 2 * np.pi * (np.arange(points) + 0.5) / points
+    arm = share * radii[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
+    return (centres[:, None] + arm).reshape(-1, 2), arm.reshape(-1, 2)
+
+
 @dataclass(frozen=True)
 class Array:
     """Discs in one cell: centres (n, 2), radii (n,).
@@ -62,12 +69,6 @@ class Array:
         """Share of the cell that is solid."""
         return np.pi * (self.radii**2).sum() / (self.length * self.height)
 
-    def ring(self, share, points):
-        """Points of circles of `share` radii in every disc, (n * points, 2), and their arms from the centres."""
-        angle = 2 * np.pi * (np.arange(points) + 0.5) / points
-        arm = share * self.radii[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
-        return (self.centres[:, None] + arm).reshape(-1, 2), arm.reshape(-1, 2)
-
     def influence(self, at, sources):
         """Velocity (2 n_at) per force (2 n_sources), mu = 1."""
         gap = at[:, None] - sources
@@ -82,17 +83,17 @@ class Array:
         n = len(self.radii)
         velocity = np.zeros((n, 2)) if velocity is None else np.asarray(velocity, float)
         spin = np.zeros(n) if spin is None else np.asarray(spin, float)
-        sources, lever = self.ring(self.inner, self.forces)
+        sources, lever = rings(self.centres, self.radii, self.inner, self.forces)
 
         def demanded(arm, points):
             turn = np.repeat(spin, points)
             moving = np.repeat(velocity, points, 0) + np.stack([-turn * arm[:, 1], turn * arm[:, 0]], -1)
             return (moving - flow).T.ravel()
 
-        wall, arm = self.ring(1.0, 2 * self.forces)
+        wall, arm = rings(self.centres, self.radii, 1.0, 2 * self.forces)
         push = np.linalg.lstsq(self.influence(wall, sources), demanded(arm, 2 * self.forces), rcond=1e-15)[0]
         # between the points that were asked
-        other, arm = self.ring(1.0, 3 * self.forces)
+        other, arm = rings(self.centres, self.radii, 1.0, 3 * self.forces)
         slip = np.abs(self.influence(other, sources) @ push - demanded(arm, 3 * self.forces)).max()
         push = push.reshape(2, n, self.forces)
         lever = lever.reshape(n, self.forces, 2)

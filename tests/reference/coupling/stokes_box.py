@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tests.reference.coupling.stokes_array import rings
+
 
 def point_forces(at, sources):
     """4 pi mu velocity (2 n_at) per force (2 n_sources)."""
@@ -60,12 +62,6 @@ class Enclosed:
     wall_forces: int = 160
     inner: float = 0.7
 
-    def ring(self, share, count):
-        """Points of circles of `share` radii in every disc, and their arms."""
-        angle = 2 * np.pi * (np.arange(count) + 0.5) / count
-        arm = share * self.radii[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
-        return (self.centres[:, None] + arm).reshape(-1, 2), arm.reshape(-1, 2)
-
     def loads(self, velocity, spin):
         """Force (n, 2), torque (n,) per mu on discs with velocity (n, 2) and spin (n,), and the slip left."""
         return self.several([(velocity, spin)])[0]
@@ -73,12 +69,12 @@ class Enclosed:
     def several(self, motions):
         """`loads` of each of some motions (velocity, spin), all from one solution of the equations."""
         n = len(self.radii)
-        inside, lever = self.ring(self.inner, self.forces)
+        inside, lever = rings(self.centres, self.radii, self.inner, self.forces)
         sources = np.concatenate([inside, self.wall.points(self.wall_forces, True)])
         lever = lever.reshape(n, self.forces, 2)
 
         def equations(times):
-            disc, arm = self.ring(1.0, times * self.forces)
+            disc, arm = rings(self.centres, self.radii, 1.0, times * self.forces)
             wall = self.wall.points(times * self.wall_forces, False)
             speeds = []
             for velocity, spin in motions:

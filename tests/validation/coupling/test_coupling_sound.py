@@ -9,12 +9,13 @@ from porescale.builders.checks import own_laws
 from porescale.builders.checks.limits import SOUND_WARN
 from porescale.builders.checks.own_laws import inflow_rate
 from porescale.builders.checks.sound import gate_suction, rate_of
-from porescale.builders.derive import derive, fluid_scales
+from porescale.builders.derive import fluid_scales
 from porescale.builders.scene import Scene
 from porescale.common.schema.sections import load
 from porescale.scene.time_function import TimeFunction
 from porescale.validation.coupling.sound import SLOW, damping, turn
 from tests.reference.folders import CASES
+from tests.reference.scenes import warned
 from tests.validation.tolerances import tolerance
 
 SPACING = 3.75e-4
@@ -54,10 +55,6 @@ def waves(folder, frequency, end=1.0):
     return load(folder, Scene)
 
 
-def told(scene, word):
-    return [it for it in derive(scene).warnings if word in it]
-
-
 def test_damping_is_lost_where_sound_is_too_slow():
     """The row holds at 0.24 rad a crossing; at 2.4 it misses by several times as much."""
     assert turn(SLOW) < SOUND_WARN
@@ -67,8 +64,8 @@ def test_damping_is_lost_where_sound_is_too_slow():
 
 def test_a_swing_is_judged_by_what_sound_crosses():
     # W f/c, c 4.81 m/s: 0.3 rad at 6.4 Hz.
-    assert not told(swinging(amplitude=0.01, frequency=6), "acoustic")
-    assert "disc 0 swings at 7 Hz" in told(swinging(amplitude=0.01, frequency=7), "acoustic")[0]
+    assert not warned(swinging(amplitude=0.01, frequency=6), "acoustic")
+    assert "disc 0 swings at 7 Hz" in warned(swinging(amplitude=0.01, frequency=7), "acoustic")[0]
 
 
 def test_a_table_is_judged_by_its_steepest_slope():
@@ -77,8 +74,8 @@ def test_a_table_is_judged_by_its_steepest_slope():
         return water(disc=[{"x": 0.018, "y": 0.018, "diameter": 5e-3, "velocity_y": table}])
 
     slow, fast = ramp(0.1), ramp(0.01)
-    assert not told(slow, "acoustic")
-    assert told(fast, "acoustic")
+    assert not warned(slow, "acoustic")
+    assert warned(fast, "acoustic")
     # From 3 to 5 in half a second: 4 1/s over half the range, 1.
     assert rate_of(TimeFunction(times=(0.0, 0.5, 1.0), values=(3.0, 3.0, 5.0))) == pytest.approx(4.0)
     assert rate_of(TimeFunction(mean=3.0)) == rate_of(TimeFunction(times=(0.0, 1.0), values=(2.0, 2.0))) == 0.0
@@ -110,9 +107,9 @@ def test_looks_in_a_rhythm_miss_what_has_it(tmp_path, monkeypatch):
 
 
 def test_an_inflow_of_a_user_is_judged_too(tmp_path):
-    for frequency, warned in ((10, True), (2, False)):
-        found = told(waves(tmp_path, frequency), "left side")
-        assert bool(found) == warned, found
+    for frequency, late in ((10, True), (2, False)):
+        found = warned(waves(tmp_path, frequency), "left side")
+        assert bool(found) == late, found
 
 
 def column(speed, **more):
@@ -122,10 +119,10 @@ def column(speed, **more):
 
 def test_a_gate_that_thins_the_water_is_seen_before_the_run():
     # Runs of the case: 0.048 at 0.3 m/s, 0.034 at 0.25, 0.072 at 0.5, 0.017 with half the step.
-    assert not told(column(0.3), "lift_speed")
-    assert "thinner by 0.075" in told(column(0.5), "lift_speed")[0]
-    assert not told(column(0.5, fluid__step=2.25e-5), "lift_speed")
-    assert not told(load(CASES / "column_collapse", Scene), "lift_speed")  # a gate that vanishes draws nothing
+    assert not warned(column(0.3), "lift_speed")
+    assert "thinner by 0.075" in warned(column(0.5), "lift_speed")[0]
+    assert not warned(column(0.5, fluid__step=2.25e-5), "lift_speed")
+    assert not warned(load(CASES / "column_collapse", Scene), "lift_speed")  # a gate that vanishes draws nothing
 
 
 def test_suction_at_the_edge_of_a_gate_is_that_of_a_run():

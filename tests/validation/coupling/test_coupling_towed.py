@@ -6,7 +6,7 @@ import pytest
 from porescale.coupling import lubrication
 from porescale.validation.coupling import films, moving, towed
 from porescale.validation.coupling.towed import faxen, weighing
-from tests.reference.coupling.stokes_array import Array
+from tests.reference.coupling.stokes_array import Array, rings
 from tests.reference.coupling.stokes_box import Box, Enclosed, point_forces
 from tests.validation.tolerances import tolerance
 
@@ -34,9 +34,9 @@ def free_spin(blockage, forces=50, wall_forces=300):
     """
     height = 1 / blockage
     box = Enclosed(Box(3 * height, height), np.zeros((1, 2)), np.array([1.0]), forces, wall_forces)
-    inside, lever = box.ring(box.inner, forces)
+    inside, lever = rings(box.centres, box.radii, box.inner, forces)
     sources = np.concatenate([inside, box.wall.points(wall_forces, True)])
-    _, arm = box.ring(1.0, 2 * forces)
+    _, arm = rings(box.centres, box.radii, 1.0, 2 * forces)
     wall = box.wall.points(2 * wall_forces, False)
     matrix = point_forces(np.concatenate([arm, wall]), sources) / (4 * np.pi)
     speeds = []
