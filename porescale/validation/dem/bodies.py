@@ -37,7 +37,9 @@ def lattice(
     return Grains(make_discs(places, RADIUS, DENSITY), law, box, skin=skin)
 
 
-def random_cell(law: Linear, seed: int, side: int = 6, skin: float | None = None) -> Grains:
+def random_cell(
+    law: Linear, seed: int, side: int = 6, skin: float | None = None, *, energy: bool = False
+) -> Grains:  # fmt: skip
     """A periodic cell of side x side discs of radii 2:3, thrown about."""
     rng = np.random.default_rng(seed)
     grid = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2) + 0.5
@@ -45,10 +47,10 @@ def random_cell(law: Linear, seed: int, side: int = 6, skin: float | None = None
     size = RADIUS * rng.uniform(2.0 / 3.0, 1.0, side**2)
     speed = rng.normal(0.0, 1.0, (side**2, 2))
     box = Box((0.0, 0.0), (side * apart, side * apart), *("periodic",) * 4)
-    return Grains(make_discs(grid * apart, size, DENSITY, speed), law, box, skin=skin)
+    return Grains(make_discs(grid * apart, size, DENSITY, speed), law, box, skin=skin, energy=energy)
 
 
-def clumped_cell(law: Linear, seed: int, side: int = 6) -> Grains:
+def clumped_cell(law: Linear, seed: int, side: int = 6, *, energy: bool = False) -> Grains:
     """The cell of `random_cell` with a smaller disc bound to the rim of every third one."""
     rng = np.random.default_rng(seed)
     plain, few = random_cell(law, seed, side), side**2 // 3
@@ -59,7 +61,7 @@ def clumped_cell(law: Linear, seed: int, side: int = 6) -> Grains:
     )
     size = np.concatenate((d.radius, 0.5 * d.radius[:few]))
     speed = np.concatenate((d.velocity, d.velocity[:few]))
-    grains = Grains(make_discs(at, size, DENSITY, speed), law, plain.box)
+    grains = Grains(make_discs(at, size, DENSITY, speed), law, plain.box, energy=energy)
     grains.steering.bind([[k, side**2 + k] for k in range(few)], DENSITY)
     return grains
 

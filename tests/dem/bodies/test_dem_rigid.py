@@ -12,16 +12,15 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.contacts import contacts
-from porescale.dem.measures.energy import elastic_pairs
 from porescale.dem.measures.fabric import LEAST_WITH_FRICTION, rattlers
 from porescale.dem.measures.porosity import disc_areas
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress
 from porescale.dem.measures.survey import coordination
 from porescale.dem.motion import affine_strain as strain
-from porescale.dem.motion.periodic_cell import LOAD, Straining
 from porescale.validation.dem.bodies import clumped_cell
 from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS
+from tests.reference.dem.stored import stored
 
 EPS = np.finfo(float).eps
 LAW = Linear(1e7)
@@ -82,16 +81,6 @@ def energy_of_bodies(grains):
         (clumps.mass, clumps.velocity, clumps.inertia, clumps.spin),
     )
     return 0.5 * float(sum(m @ np.sum(v**2, axis=1) + i @ w**2 for m, v, i, w in parts))
-
-
-def stored(grains):
-    """Elastic energy of a strained cell now, J/m."""
-    (width, _), (tilt, height) = grains.steering.edges()
-    now = Straining(width, height, tilt, 0.0, 0.0, 0.0, np.zeros(LOAD))
-    d, material = grains.discs, grains.material
-    grains.current_pairs()
-    parts = elastic_pairs(d.position, d.radius, material, grains.pair_arrays(), grains.contact, now)
-    return float(sum(parts))
 
 
 @pytest.mark.parametrize("rates", [{"xx": -4.0}, {"xy": 8.0}])

@@ -13,8 +13,9 @@ from porescale.dem.measures.survey import kinetic_energy, max_overlap
 from porescale.dem.motion import affine_strain as strain
 from porescale.dem.motion.periodic_cell import Still, Straining
 from porescale.dem.steering import COMPONENTS
-from porescale.validation.dem.bodies import lattice, random_cell, stored
+from porescale.validation.dem.bodies import lattice, random_cell
 from tests.reference.dem.restarted import differing, saved_on_the_way
+from tests.reference.dem.stored import stored
 
 LAW = Linear(1e7, 20.0, 5e6, 10.0, 0.5)
 EPS = np.finfo(float).eps
