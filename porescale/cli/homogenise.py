@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from porescale.common.core.types import Floats
     from porescale.common.studies.runner import Campaign, Ended
 
+    Packed = tuple[Floats, Floats, tuple[float, float]]
+
 SPECIMEN, PORES = "specimen.toml", "permeability.json"
 UNTIL = {
     "friction": "critical friction angle", "peak": "peak friction angle", "dilatancy": "peak dilatancy angle",
@@ -159,18 +161,17 @@ def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str,
     from porescale.common.record.series import read_series
     from porescale.dem.measures.network import elasticity
 
-    tests = numbers([read_series(ended.folder / "series.csv") for ended in ends])
-    made = []
-    for test, ended in zip(tests, ends, strict=True):
-        stiffness, poisson = elasticity(*_packed(ended.folder), law_of(scene))
-        made.append(test | {"stiffness": stiffness, "Poisson's ratio": poisson})
+    made = numbers([read_series(ended.folder / "series.csv") for ended in ends])
     ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
-    if ratio is None:
-        return made
-    return [row | _pores(ended.folder, ratio, cells) for row, ended in zip(made, ends, strict=True)]
+    for row, ended in zip(made, ends, strict=True):
+        packed = _packed(ended.folder)
+        row["stiffness"], row["Poisson's ratio"] = elasticity(*packed, law_of(scene))
+        if ratio is not None:
+            row |= _pores(ended.folder, packed, ratio, cells)
+    return made
 
 
-def _packed(folder: Path) -> tuple[Floats, Floats, tuple[float, float]]:
+def _packed(folder: Path) -> Packed:
     """Positions (n, 2) m, radii (n,) m and cell (width, height) m of a specimen before its test."""
     from porescale.common.record.open_run import open_run
 
@@ -180,7 +181,7 @@ def _packed(folder: Path) -> tuple[Floats, Floats, tuple[float, float]]:
     return grains.position, grains.data["radius"], (float(box["width"]), float(box["height"]))
 
 
-def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
+def _pores(folder: Path, packed: Packed, ratio: float, cells: int) -> dict[str, float]:
     """Numbers of the flow through a specimen before and after its test; kept beside it once they are measured."""
     from porescale.analysis.soil_pores import STEP, flow_numbers, sheared_numbers
     from porescale.common.core.atomic import write_text
@@ -196,7 +197,7 @@ def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
             return {str(name): float(value) for name, value in known["numbers"].items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         pass  # not there, torn or of another question: measured anew
-    position, radius, (width, height) = _packed(folder)
+    position, radius, (width, height) = packed
     sheared = open_run(folder).snapshot(-1).clouds["grains"]
     made = flow_numbers(position, ratio * radius, (width, height), cells)
     strain = {axis: float(read_series(folder / "series.csv")[f"strain {axis} ()"][-1]) for axis in ("xx", "yy")}

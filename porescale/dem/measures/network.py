@@ -50,10 +50,8 @@ def network(rock: Rock) -> Network:
     ends, back = bonds.ends, bonds.back
     way, far, other = np.zeros((len(ends), 2)), np.zeros((len(ends), 2)), np.zeros(len(ends), np.int64)
     touched(d.position, ends, known, grains.cell, way, far, other)
-    one, distance = ends[:, 0], np.hypot(*way.T)
-    normal = way / distance[:, None]
-    across = np.column_stack((-normal[:, 1], normal[:, 0]))
-    arm = 0.5 * (distance + (d.radius[one] ** 2 - d.radius[other] ** 2) / distance)
+    one = ends[:, 0]
+    distance, normal, across, arm = _chords(way, d.radius[one], d.radius[other])
     point = d.position[one] + arm[:, None] * normal
     row = np.where(clumps.group >= 0, clumps.group, clumps.count + np.arange(d.count))
     place = np.concatenate((clumps.position, d.position))
@@ -73,11 +71,7 @@ def stiffness(rock: Rock) -> float:
     free = np.ones(count, bool)
     free[list(net.plates)] = False
     within = np.flatnonzero(np.repeat(free, 3))
-    part = net.stretch[:, within]
-    weighted = diags_array(net.spring)
-    size = np.tile((1.0, 1.0, rock.diameter**2), int(free.sum()))
-    matrix = part.T @ weighted @ part + diags_array(LOOSE * float(np.abs(net.spring).max()) * size)
-    moved[within] = spsolve(matrix.tocsc(), -(part.T @ (net.spring * (net.stretch @ moved))))
+    moved[within] = _at_rest(net.stretch[:, within], net.spring, net.stretch @ moved, rock.diameter)
     return _energy(net, moved) / (0.5 * rock.length * rock.height)
 
 
@@ -106,12 +100,9 @@ def moduli(position: Floats, radius: Floats, box: tuple[float, float], law: Line
     pairs = KDTree(position % box, boxsize=box).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
     pairs = pairs[np.lexsort(pairs.T[::-1])]  # the order of sums, and with it the last digits, is then that of discs
     way = nearest_image(position[pairs[:, 1]] - position[pairs[:, 0]], (*box, 0.0))
-    distance = np.hypot(*way.T)
-    near = distance < radius[pairs].sum(axis=1)
-    (one, other), way, distance = pairs[near].T, way[near], distance[near]
-    normal = way / distance[:, None]
-    across = np.column_stack((-normal[:, 1], normal[:, 0]))
-    first = 0.5 * (distance + (radius[one] ** 2 - radius[other] ** 2) / distance)
+    near = np.hypot(*way.T) < radius[pairs].sum(axis=1)
+    (one, other), way = pairs[near].T, way[near]
+    distance, normal, across, first = _chords(way, radius[one], radius[other])
     arms = first[:, None] * normal, (first - distance)[:, None] * normal
     rows = [_springs(arms, along, (one, other)) for along in (normal, across)]
     reduced = radius[one] * radius[other] / (radius[one] + radius[other])
@@ -124,9 +115,7 @@ def moduli(position: Floats, radius: Floats, box: tuple[float, float], law: Line
     for k, strain in enumerate((((1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((0.0, 0.5), (0.5, 0.0)))):
         apart = -way @ np.array(strain)
         strained[: 2 * len(one), k] = np.concatenate([np.sum(along * apart, axis=1) for along in (normal, across)])
-    size = np.tile((1.0, 1.0, float(np.mean(radius)) ** 2), len(position))
-    matrix = stretch.T @ diags_array(spring) @ stretch + diags_array(LOOSE * law.stiffness * size)
-    moved = spsolve(matrix.tocsc(), -(stretch.T @ (spring[:, None] * strained)))
+    moved = _at_rest(stretch, spring, strained, float(np.mean(radius)))
     made: Floats = strained.T @ (spring[:, None] * (strained + stretch @ moved)) / (box[0] * box[1])
     return made
 
@@ -138,6 +127,24 @@ def elasticity(position: Floats, radius: Floats, box: tuple[float, float], law: 
     shear = 0.125 * (made[0, 0] + made[1, 1] - 2.0 * made[0, 1]) + 0.5 * made[2, 2]
     poisson = 0.5 * (bulk - shear) / bulk
     return float(2.0 * shear * (1.0 + poisson)), float(poisson)
+
+
+def _chords(way: Floats, radius: Floats, other: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Distance (m,) m, unit vectors along and across (m, 2), and how far the common chord lies from the first centre
+    (m,) m, of discs ``way`` (m, 2) m apart with radii ``radius`` and ``other`` (m,) m."""
+    distance = np.hypot(*way.T)
+    normal = way / distance[:, None]
+    across = np.column_stack((-normal[:, 1], normal[:, 0]))
+    return distance, normal, across, 0.5 * (distance + (radius**2 - other**2) / distance)
+
+
+def _at_rest(stretch: csr_array, spring: Floats, strained: Floats, size: float) -> Floats:
+    """Displacements (m) and rotations (rad) of bodies, three a body, at which springs that are lengthened by
+    ``strained`` (m,) or (m, k) m hold them at rest; size (m): of a body, by which ties resist rotation."""
+    ties = np.tile((1.0, 1.0, size**2), stretch.shape[1] // 3)
+    matrix = stretch.T @ diags_array(spring) @ stretch + diags_array(LOOSE * float(np.abs(spring).max()) * ties)
+    moved: Floats = spsolve(matrix.tocsc(), -(stretch.T @ (spring * strained.T).T))
+    return moved
 
 
 def _energy(net: Network, moved: Floats) -> float:
