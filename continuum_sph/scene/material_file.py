@@ -1,7 +1,8 @@
 """[soil] material = "material.toml": numbers of a soil as its grains have them, from the file that measures them.
 
-Values given in the scene take precedence.  k is not that of the test's own water: it follows from K of the file
-and the scene's own water, k = K ρ g/μ.  The card keeps where the numbers come from, and their standard errors.
+Values given in the scene take precedence; a stiffness of its own has an exponent of its own.  k is not that of the
+test's own water: it follows from K of the file and the scene's own water, k = K ρ g/μ.  The card keeps where the
+numbers come from, and their standard errors.
 """
 
 import hashlib
@@ -54,6 +55,7 @@ class Taken(Section):
     porosity: float = quantity("", ge=0, lt=1)
     stiffness: float | None = quantity("Pa", None, gt=0)
     reference: float | None = quantity("Pa", None, gt=0)
+    exponent: float | None = quantity("", None, ge=0, le=1)
     poisson: float | None = quantity("", None, ge=0, lt=0.5)
 
 
@@ -158,6 +160,8 @@ def with_material(table: Any, folder: Path | None) -> Any:
     file, digest = read_material((folder or Path()) / name)
     taken = file.soil.model_dump(exclude_none=True)
     state = file.strength.peak if soil.get("strength") == "peak" else file.strength.critical
+    if soil.get("stiffness") is not None:  # how E follows the stress belongs to the E that is given
+        taken = {key: value for key, value in taken.items() if key not in ("reference", "exponent")}
     taken |= state.model_dump()
     origin: dict[str, Any] = {"file": name, "sha256": digest, "made": file.made}
     origin["measured"] = {key: (it.mean, it.standard_error) for key, it in file.measured.items()}

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from porescale.analysis.material import UNITS, Known, elastic
+from porescale.analysis.material import EXPONENT, UNITS, Known, elastic, grows
 from porescale.analysis.shear_rate import AT_REST, FASTEST_ANGLE, GROWTH, HALFWAY, handed_over, law, point
 from porescale.common.core.statistics import LEAST
 
@@ -41,6 +41,9 @@ def doubts(rows: Sequence[Mapping[str, float]], found: Mapping[str, Known]) -> l
             f"stiffness {found['stiffness'].text()} and Poisson's ratio {ratio} are not those "
             "of an elastic soil: contacts hardly hold the packing, and a continuum takes neither of them"
         )
+    elif EXPONENT in found and not grows(found):
+        text = found[EXPONENT].text()
+        made.append(f"{EXPONENT} {text} is not between 0 and 1 beyond its bar: none is handed over; more packings")
     for name in HANDED_OVER:
         if name in found and found[name].interval > HALF * abs(found[name].mean):
             made.append(f"{name} {found[name].text()} is hardly known: more packings, or larger ones")

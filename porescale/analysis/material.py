@@ -2,7 +2,8 @@
 
 format          1
 [soil]          numbers that a scene of the continuum takes over: density (of grains per whole volume), porosity,
-                stiffness at the mean stress reference, poisson;  SI, angles in rad
+                stiffness at the mean stress reference, exponent by which it grows with that stress, poisson;  SI,
+                angles in rad
 [strength.critical], [strength.peak]    friction_angle, dilatancy_angle: after large strains, and at failure
 [pores]         permeability: K, m², of which k = K ρ g/μ of the scene's own water; hydraulic_share: of their volume
                 that grains take up in the flow, λ²
@@ -24,11 +25,13 @@ from porescale.common.core.statistics import Sample
 
 FORMAT = 1
 NAME = "material.toml"
+EXPONENT = "exponent of stiffness"
 SOLIDEST = 0.49
 """Poisson's ratio from where on an elastic soil is not one: such a ratio holds dilatancy, and is not taken over."""
 UNITS = {
     "porosity": "", "peak friction angle": "rad", "peak dilatancy angle": "rad", "critical friction angle": "rad",
     "critical dilatancy angle": "rad", "critical porosity": "", "stiffness": "Pa", "Poisson's ratio": "",
+    EXPONENT: "",
     "porosity after the test": "", "permeability": "m^2", "permeability after the test": "m^2",
     "permeability over hydraulic diameter squared": "", "hydraulic solid fraction": "", "lattice error": "",
     "exponent of lambda": "", "excess with free grains at half the cells": "", "independent critical values": "",
@@ -95,6 +98,11 @@ def elastic(found: Mapping[str, Known]) -> bool:
     return both and found["stiffness"].mean > 0.0 and 0.0 <= found["Poisson's ratio"].mean < SOLIDEST
 
 
+def grows(found: Mapping[str, Known]) -> bool:
+    """Whether stiffness is seen to grow with pressure, no faster than in proportion."""
+    return EXPONENT in found and found[EXPONENT].resolved and found[EXPONENT].mean <= 1.0
+
+
 def tables(
     found: Mapping[str, Known],
     density: float,
@@ -108,6 +116,8 @@ def tables(
     soil = {"density": (1.0 - mean["porosity"]) * density, "porosity": mean["porosity"]}
     if elastic(found):
         soil |= {"stiffness": mean["stiffness"], "reference": pressure, "poisson": mean["Poisson's ratio"]}
+        if grows(found):
+            soil["exponent"] = mean[EXPONENT]
     strength = {
         "critical": {"friction_angle": mean["critical friction angle"], "dilatancy_angle": 0.0},
         "peak": {"friction_angle": mean["peak friction angle"],

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import math
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -24,10 +25,11 @@ if TYPE_CHECKING:
     from porescale.builders.scene import Scene as Tables
     from porescale.common.core.types import Floats
     from porescale.common.studies.runner import Campaign, Ended
+    from porescale.dem.contact.linear import Linear
 
     Packed = tuple[Floats, Floats, tuple[float, float]]
 
-SPECIMEN, PORES = "specimen.toml", "permeability.json"
+SPECIMEN, PORES, SPRINGS = "specimen.toml", "permeability.json", "stiffness.json"
 UNTIL = {
     "friction": "critical friction angle", "peak": "peak friction angle", "dilatancy": "peak dilatancy angle",
     "porosity": "porosity", "stiffness": "stiffness", "permeability": "permeability",
@@ -157,15 +159,14 @@ def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str,
     """All numbers of the finished specimens: of their tests and contacts, and of the flow through them where lambda is
     stated."""
     from porescale.analysis.biaxial import numbers
-    from porescale.analysis.homogenise import law_of
+    from porescale.analysis.homogenise import law_of, pressure_of
     from porescale.common.record.series import read_series
-    from porescale.dem.measures.network import elasticity
 
     made = numbers([read_series(ended.folder / "series.csv") for ended in ends])
     ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
     for row, ended in zip(made, ends, strict=True):
         packed = _packed(ended.folder)
-        row["stiffness"], row["Poisson's ratio"] = elasticity(*packed, law_of(scene))
+        row |= _stiffness(ended.folder, packed, law_of(scene), pressure_of(scene))
         if ratio is not None:
             row |= _pores(ended.folder, packed, ratio, cells)
     return made
@@ -181,29 +182,50 @@ def _packed(folder: Path) -> Packed:
     return grains.position, grains.data["radius"], (float(box["width"]), float(box["height"]))
 
 
-def _pores(folder: Path, packed: Packed, ratio: float, cells: int) -> dict[str, float]:
-    """Numbers of the flow through a specimen before and after its test; kept beside it once they are measured."""
-    from porescale.analysis.soil_pores import STEP, flow_numbers, sheared_numbers
+def _once(path: Path, of: Mapping[str, Any], measure: Callable[[], Mapping[str, float]]) -> dict[str, float]:
+    """Numbers of a specimen, kept beside it in a file at ``path`` once they are measured;  of : what they follow."""
     from porescale.common.core.atomic import write_text
-    from porescale.common.record.open_run import open_run
-    from porescale.common.record.series import read_series
-    from porescale.coupling.limits import FOR_NARROW_GAPS
 
-    kept = folder / PORES
-    of = {"lambda": ratio, "cells": cells, "step": STEP, "operator": FOR_NARROW_GAPS, "after": True}
     try:
-        known = json.loads(kept.read_text(encoding="utf-8"))
+        known = json.loads(path.read_text(encoding="utf-8"))
         if known["of"] == of:
             return {str(name): float(value) for name, value in known["numbers"].items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         pass  # not there, torn or of another question: measured anew
+    made = dict(measure())
+    write_text(path, json.dumps({"of": of, "numbers": made}, indent=1))
+    return made
+
+
+def _stiffness(folder: Path, packed: Packed, law: Linear, pressure: float) -> dict[str, float]:
+    """E, ν and the exponent of stiffness of a specimen before its test."""
+    from porescale.analysis.pressed import FURTHER, stiffness_numbers
+
+    of = {**asdict(law), "pressure": pressure, "further": FURTHER}
+    return _once(folder / SPRINGS, of, lambda: stiffness_numbers(*packed, law, pressure))
+
+
+def _pores(folder: Path, packed: Packed, ratio: float, cells: int) -> dict[str, float]:
+    """Numbers of the flow through a specimen before and after its test."""
+    from porescale.analysis.soil_pores import STEP
+    from porescale.coupling.limits import FOR_NARROW_GAPS
+
+    of = {"lambda": ratio, "cells": cells, "step": STEP, "operator": FOR_NARROW_GAPS, "after": True}
+    return _once(folder / PORES, of, lambda: _flow(folder, packed, ratio, cells))
+
+
+def _flow(folder: Path, packed: Packed, ratio: float, cells: int) -> dict[str, float]:
+    """The numbers of `_pores`, measured."""
+    from porescale.analysis.soil_pores import flow_numbers, sheared_numbers
+    from porescale.common.record.open_run import open_run
+    from porescale.common.record.series import read_series
+
     position, radius, (width, height) = packed
     sheared = open_run(folder).snapshot(-1).clouds["grains"]
     made = flow_numbers(position, ratio * radius, (width, height), cells)
     strain = {axis: float(read_series(folder / "series.csv")[f"strain {axis} ()"][-1]) for axis in ("xx", "yy")}
     box = width * math.exp(strain["xx"]), height * math.exp(strain["yy"])
     made |= sheared_numbers(sheared.position, ratio * sheared.data["radius"], box, cells)
-    write_text(kept, json.dumps({"of": of, "numbers": made}, indent=1))
     say(f"{folder.name}: K = {made['permeability']:.3g} m^2 at {made['cells']:.3g} cells")
     return made
 

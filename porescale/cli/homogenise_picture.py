@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from porescale.analysis.biaxial import running
-from porescale.analysis.material import Known
+from porescale.analysis.material import EXPONENT, Known
 from porescale.analysis.shear_rate import AT_REST, GROWTH, HALFWAY, inertial_numbers, law, point
 from porescale.analysis.softening import STRAIN
 from porescale.cli.homogenise_rates import Rates
@@ -17,7 +17,7 @@ from porescale.common.evidence.files import new_figure, png
 EVERY = 5
 """Rows between points of a curve."""
 BARS = ("peak friction angle", "peak dilatancy angle", "critical friction angle", "porosity", "stiffness",
-        "Poisson's ratio", "permeability")  # fmt: skip
+        "Poisson's ratio", EXPONENT, "permeability")  # fmt: skip
 
 
 def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known], rates: Rates) -> bytes:

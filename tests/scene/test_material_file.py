@@ -127,6 +127,24 @@ def test_a_scene_takes_over_every_number(tmp_path):
     assert (peak.friction_angle, peak.dilatancy_angle) == pytest.approx((0.42, 0.12), rel=1e-14)
 
 
+EXPONENTS = [{"exponent of stiffness": 0.12 + 0.02 * k} for k in range(4)]
+
+
+def test_a_scene_takes_the_exponent_over_with_the_stiffness_that_it_belongs_to(tmp_path):
+    material(tmp_path, soil(*EXPONENTS))
+    assert doubts(soil(*EXPONENTS), known(soil(*EXPONENTS))) == []
+    soils = [scene(tmp_path, text).soil for text in ("", 'stiffness = "1 MPa"\n', "exponent = 0.3\n")]
+    assert [it.exponent for it in soils] == pytest.approx([0.15, 0.0, 0.3], abs=1e-14)
+    assert [it.reference == pytest.approx(300.0, rel=1e-14) for it in soils] == [True, False, True]
+
+
+@pytest.mark.parametrize("values", [(-0.1, 0.3, -0.2, 0.4), (1.2, 1.21, 1.2, 1.21), (-0.11, -0.1, -0.1, -0.11)])
+def test_an_exponent_that_is_not_known_to_be_one_is_not_handed_over_which_is_said(values):
+    rows = soil(*[{"exponent of stiffness": it} for it in values])
+    assert "exponent" not in tables(known(rows), 2500.0, 300.0, {})["soil"]
+    assert any("none is handed over" in line for line in doubts(rows, known(rows)))
+
+
 def test_the_water_of_the_file_reader_is_that_of_a_scene_without_any():
     water = WaterSection()
     assert (water.density, water.viscosity) == (DENSITY, VISCOSITY)

@@ -97,7 +97,8 @@ def moduli(position: Floats, radius: Floats, box: tuple[float, float], law: Line
     position (n, 2) m, radius (n,) m: discs of one material in a periodic cell;  box : its width and height, m.  All
     contacts stick; discs that nothing holds bear nothing.
     """
-    pairs = KDTree(position % box, boxsize=box).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
+    inside = position % box % box  # once more: what lies below 0 by round-off alone is the box itself after the first
+    pairs = KDTree(inside, boxsize=box).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
     pairs = pairs[np.lexsort(pairs.T[::-1])]  # the order of sums, and with it the last digits, is then that of discs
     way = nearest_image(position[pairs[:, 1]] - position[pairs[:, 0]], (*box, 0.0))
     near = np.hypot(*way.T) < radius[pairs].sum(axis=1)
@@ -127,6 +128,11 @@ def elasticity(position: Floats, radius: Floats, box: tuple[float, float], law: 
     shear = 0.125 * (made[0, 0] + made[1, 1] - 2.0 * made[0, 1]) + 0.5 * made[2, 2]
     poisson = 0.5 * (bulk - shear) / bulk
     return float(2.0 * shear * (1.0 + poisson)), float(poisson)
+
+
+def confined(stiffness: float, poisson: float) -> float:
+    """M (Pa), stress over strain of what cannot widen, of E (Pa) and Poisson's ratio in plane strain."""
+    return stiffness * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
 
 
 def _chords(way: Floats, radius: Floats, other: Floats) -> tuple[Floats, Floats, Floats, Floats]:

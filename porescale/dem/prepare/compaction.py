@@ -12,6 +12,7 @@ import csv
 import dataclasses
 import io
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -81,8 +82,7 @@ class Compactor:
         (Pa).  Raises InputError when that needs overlaps beyond 2 % of a diameter, PorescaleError without rest."""
         if not pressure > 0.0 or not math.isfinite(pressure):
             raise InputError(Fault("pressure", pressure, "cannot hold a packing together", "Pa", "> 0"))
-        soft = pressure / self.law.stiffness
-        if soft > DEEPEST:
+        if (soft := pressure / self.law.stiffness) > DEEPEST:
             problem = f"would press grains into each other by about {soft:.2g} of a diameter"
             repair = "raise contact.stiffness or lower the pressure"
             highest = f"<= {DEEPEST * self.law.stiffness:.3g}"
@@ -92,6 +92,16 @@ class Compactor:
             grains.set_law(law, law.with_friction(0.0) if law is not self.law else law)
             self._hold(grains, pressure)
         return self._made(grains, radius)
+
+    def further(self, position: Floats, radius: Floats, pressures: Sequence[float]) -> list[tuple[Floats, Floats]]:
+        """Positions and radii of discs that rest at ``position`` (n, 2) m with ``radius`` (n,) m, pressed to each of
+        ``pressures`` (Pa) in turn.  What friction held is forgotten at first.  Raises PorescaleError without rest."""
+        grains, found = self.grains(position, radius), []
+        grains.set_law(self.law, self.law.with_friction(0.0))
+        for pressure in pressures:
+            self._hold(grains, pressure)
+            found.append((grains.discs.position.copy(), grains.discs.radius.copy()))
+        return found
 
     def to_size(self, radius: Floats) -> Compressed:
         """Discs of ``radius`` (n,) m in the rectangle: the packing fraction then follows from their areas.
