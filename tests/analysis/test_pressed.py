@@ -42,7 +42,7 @@ def test_contacts_that_close_on_the_way_stiffen_it_by_as_much_as_their_springs_h
     found = stiffness_numbers(position, radius, box, LAW, PRESSURE)
     closed = lattice()
     open_, all_ = (confined(*elasticity(*it, LAW)) for it in ((position, radius, box), closed))
-    # in the end all springs hold, as in the lattice of equal discs; discs lie off by less than gap + OVERLAP of a diameter
+    # in the end all springs hold, as in the lattice of equal discs, from which discs lie less than gap + OVERLAP away
     assert found[EXPONENT] == pytest.approx(math.log(all_ / open_) / math.log(FURTHER), abs=gap + OVERLAP)
     assert found[EXPONENT] > 0.1
 
