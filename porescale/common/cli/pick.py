@@ -81,7 +81,7 @@ def beyond(package: Package, file: Path, front: Front, point: FrontPoint, settin
         over = plan.over.key if plan.over else None
     now, then = keys(settings), keys(front.settings)
     if front.scene is not None:  # the file may have changed since
-        base, today = dict(flat(front.scene)), dict(flat(_scene(package, file, front.settings)))
+        base, today = dict(flat(_completed(package, front.scene))), dict(flat(_scene(package, file, front.settings)))
         then |= {key: base.get(key) for key in base.keys() | today.keys() if base.get(key) != today.get(key)}
     changed = sorted(key for key in now.keys() | then.keys() if now.get(key) != then.get(key))
     changed = [key for key in changed if not key.startswith(FREE) and key not in ("time.end", over)]
@@ -101,6 +101,17 @@ def _scene(package: Package, file: Path, settings: Sequence[str], quality: str |
     from porescale.common.schema.sections import load, scene_as_dict
 
     return scene_as_dict(load(file, package.scene(), quality=quality, overrides=settings))
+
+
+def _completed(package: Package, scene: dict[str, Any]) -> dict[str, Any]:
+    """A recorded ``scene`` with the defaults of keys that are newer than its record; as it is where it is no longer
+    one."""
+    from porescale.common.schema.sections import scene_as_dict, validate
+
+    try:
+        return scene_as_dict(validate(package.scene(), scene))
+    except InputError:
+        return scene
 
 
 def better_level(package: Package, file: Path, front: Front, error: float) -> str:

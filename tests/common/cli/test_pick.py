@@ -67,6 +67,15 @@ def test_an_edited_scene_is_not_that_of_the_front(toy_front, capsys):
         assert capsys.readouterr().err.count("warning") == warned
 
 
+def test_a_key_that_is_newer_than_the_front_changes_nothing_until_it_is_given(toy_front, capsys):
+    table = json.loads(toy_front.with_name("front.json").read_text())
+    older = {"decay": {"rate": 3.0, "start": 1.5}, "duration": 2.0}  # without `trouble`
+    toy_front.with_name("front.json").write_text(json.dumps(table | {"scene": older}))
+    for more, warned in (([], 0), (['trouble="late"'], 1)):
+        pick(TOY, toy_front, "50%", None, ["decay.start=1.5", *more], quiet=False)
+        assert capsys.readouterr().err.count("warning") == warned
+
+
 def test_a_run_beyond_the_time_of_its_front_is_warned_of():
     scene = ROOT / "cases" / "column_collapse" / "scene.toml"
     found = read_front(scene)
