@@ -57,7 +57,7 @@ class Packing(Section):
         "m", (), help="[diameter, number of grains] of each size, instead of diameter and packing_fraction"
     )
     log_spread: float | None = quantity(
-        "", None, ge=0, le=0.46, help="deviation of the logarithm of lognormal diameters, instead of size_spread"
+        "", None, ge=0, le=0.599, help="deviation of the logarithm of lognormal diameters, instead of size_spread"
     )
     compress: bool = pydantic.Field(False, description="grow in place to packing_fraction, without gravity")
     pressure: float | None = quantity("Pa", None, gt=0, le=1e12, help="mean stress to compress to, without gravity")

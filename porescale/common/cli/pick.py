@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -103,7 +103,7 @@ def _scene(package: Package, file: Path, settings: Sequence[str], quality: str |
     return scene_as_dict(load(file, package.scene(), quality=quality, overrides=settings))
 
 
-def _completed(package: Package, scene: dict[str, Any]) -> dict[str, Any]:
+def _completed(package: Package, scene: Mapping[str, Any]) -> Mapping[str, Any]:
     """A recorded ``scene`` with the defaults of keys that are newer than its record; as it is where it is no longer
     one."""
     from porescale.common.schema.sections import scene_as_dict, validate

@@ -1,4 +1,4 @@
-"""Cells: which points lie near each other, by a counting sort into a regular grid of cells.
+"""Cells: which points lie near each other, by a counting sort into regular grids of cells, one for each level of size.
 
 Stable (points keep their index order inside a cell), linear in points plus cells, no allocation.
 Points outside the grid belong to the nearest border cell (or to their periodic image's cell), so a search
@@ -25,6 +25,10 @@ class Grid(NamedTuple):
     period_x: float = 0.0
     period_y: float = 0.0
     tilt: float = 0.0
+
+
+REACH, FIRST, COLUMNS = 9, 10, 11
+"""Columns of a table of levels behind the nine numbers of its grids, and how many there are."""
 
 
 @inline
@@ -108,23 +112,50 @@ def cell_at(x, y, grid):
     return row * grid.columns + column
 
 
-@kernel
-def sort_into_cells(x, grid, cell, start, order):
-    """Counting sort of points ``x`` (n, 2) m into the cells of ``grid``, row after row.
+@inline
+def grid_of(levels, k):
+    """The grid of row ``k`` of ``levels`` (l, COLUMNS), see `sort_into_cells`."""
+    return Grid(
+        levels[k, 0], levels[k, 1], levels[k, 2], levels[k, 3], int(levels[k, 4]), int(levels[k, 5]), levels[k, 6],
+        levels[k, 7], levels[k, 8],
+    )  # fmt: skip
 
-    Overwrites ``cell`` (n,) cell of each point, ``start`` (columns rows + 1,) first slot of each cell and
-    ``order`` (n,) points by cell, ascending inside a cell.  Not checked: positions must be finite.
+
+@kernel
+def largest_below(reach, bound):
+    """(largest, number) of those of ``reach`` (n,) that are at most ``bound``; (-1, 0) where none is."""
+    largest, number = -1.0, 0
+    for i in range(reach.shape[0]):
+        if reach[i] <= bound:
+            largest = max(largest, reach[i])
+            number += 1
+    return largest, number
+
+
+@kernel
+def sort_into_cells(x, reach, levels, cell, start, order):
+    """Counting sort of points ``x`` (n, 2) m into the cells of their level, level after level, row after row.
+
+    reach (n,) m;  levels (l, COLUMNS): of each level the numbers of its Grid, the largest reach of its points, m, and
+    its first cell; the largest first.  Overwrites ``cell`` (n,) cell of each point, ``start`` (cells + 1,) first slot
+    of each cell and ``order`` (n,) points by cell, ascending inside a cell.  Not checked: positions must be finite.
     """
     n = x.shape[0]
     start[:] = 0
+    grid, first, k = grid_of(levels, 0), 0, 0
     for i in range(n):
-        cell[i] = cell_at(x[i, 0], x[i, 1], grid)
+        if levels.shape[0] > 1:
+            k = 0
+            while k + 1 < levels.shape[0] and reach[i] <= levels[k + 1, REACH]:
+                k += 1
+            grid, first = grid_of(levels, k), int(levels[k, FIRST])
+        cell[i] = first + cell_at(x[i, 0], x[i, 1], grid)
         start[cell[i] + 1] += 1
-    for c in range(grid.columns * grid.rows):
+    for c in range(start.shape[0] - 1):
         start[c + 1] += start[c]
     for i in range(n):  # start[c] now walks to the first slot of cell c + 1 …
         order[start[cell[i]]] = i
         start[cell[i]] += 1
-    for c in range(grid.columns * grid.rows, 0, -1):  # … and is shifted back
+    for c in range(start.shape[0] - 1, 0, -1):  # … and is shifted back
         start[c] = start[c - 1]
     start[0] = 0

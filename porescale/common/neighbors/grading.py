@@ -17,8 +17,8 @@ Curve = Sequence[tuple[float, float]]
 Sizes = Sequence[tuple[float, float]]
 """Given sizes: (diameter in m, number of discs)."""
 
-WIDEST = 10.0
-"""Largest over smallest diameter: the pair search has one cutoff for all, so that wider mixtures cost too much."""
+WIDEST = 20.0
+"""Largest over smallest diameter: the step follows the smallest, so that wider mixtures cost too much."""
 SMALLEST, LARGEST = 1e-9, 1e3
 """Diameters of a curve, m: beyond them a unit is wrong."""
 MOST, MOST_GRADED = 10_000_000, 300_000
@@ -121,11 +121,11 @@ def lognormal_radii(count: int, diameter: float, spread: float) -> Floats:
     """Radii (count,) m, ascending, of lognormal diameters of mean ``diameter`` (m), ``spread`` that of their logarithm.
 
     Evenly spaced quantiles, cut off at 2.5 standard deviations and scaled to the mean.  Raises InputError when the
-    largest is more than ten times the smallest.
+    largest is more than WIDEST times the smallest.
     """
     if not 0.0 <= spread <= np.log(WIDEST) / (2.0 * TAIL):
         allowed = f"0 to {np.log(WIDEST) / (2.0 * TAIL):.3g}"
-        raise InputError(Fault("log_spread", spread, "sizes would span more than 1 to 10", "", allowed))
+        raise InputError(Fault("log_spread", spread, f"sizes would span more than 1 to {WIDEST:g}", "", allowed))
     from scipy.special import ndtr, ndtri  # takes longer to import than a scene takes to be checked
 
     low = float(ndtr(-TAIL))

@@ -14,7 +14,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import search
 from porescale.common.neighbors import skin as skins
-from porescale.common.neighbors.cells import Grid, grid_shape, sort_into_cells
+from porescale.common.neighbors.cells import COLUMNS, Grid, grid_shape, largest_below, sort_into_cells
 
 SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier costs (measured)
 ROW = 256  # entries for a row that is being made, to begin with
@@ -22,6 +22,8 @@ BUILD = 2.0  # steps that a build costs (measured: smoothed water, 20 neighbours
 LONG = 64  # updates after which a list that still holds may be made anew with a lesser skin
 LEAST = 0.2  # of the largest skin: less hardly changes the time of a step
 BLOCK = 2.0  # cutoffs: smaller blocks move more alike, but what is not beside them must stay away
+FINER = 4.0  # largest over smallest reach of a level: points that differ by less share a grid
+LEVELS = 8  # at most: what is FINER ** LEVELS times smaller than the largest lies in the last
 CELLS_PER_CUTOFF = 2  # half-cutoff cells: a window of 6.25 instead of 9 squared cutoffs to look through
 
 
@@ -90,6 +92,7 @@ class PairList:
         self._cell = np.empty(count - self._first, np.int32)
         self._order = np.empty(count - self._first, np.int32)
         self._cell_start = np.zeros(2, np.int64)
+        self._levels = np.zeros((LEVELS, COLUMNS))
         self._sorted = np.empty((3, count - self._first))  # x, y, reach in cell order
         self._block = np.empty(count, np.int32)  # that each anchor lies in, for the list of build ``_blocked``
         self._blocked = -1
@@ -199,15 +202,14 @@ class PairList:
         cutoff = 2.0 * float(reach.max(initial=0.0)) + self.skin
         if self.count > 1:  # none or one has no partner, whatever the box
             self._check_periods(cutoff)
-        grid = self._sort(x[self._first :], reach[self._first :], cutoff)
+        levels = self._sort(x[self._first :], reach[self._first :])
         new = 1 - self._current
         old_start, old_partner, old_carried = self.start, self.partner, self.carried
         rows, ends = self.count, 1  # points with rows to search, ends of a pair that are listed for each found
         if self.between is not None:
             rows, ends = self.between, 2
-        largest = float(reach.max(initial=0.0))
-        criterion = search.Criterion(largest, self.skin, self.full)
-        where = (x[:rows], reach[:rows], self._sorted, self._order, self._cell_start, grid, criterion)
+        criterion = search.Criterion(self.skin, self.full)
+        where = (x[:rows], reach[:rows], self._sorted, self._order, self._cell_start, levels, criterion)
         start = self._starts[new][: rows + 1]
         if self.count < SERIAL_BELOW or threads() == 1:
             total, longest = search.fill_serial(start, self._partners[new], self._row, *where)
@@ -247,18 +249,29 @@ class PairList:
         width, height = self.upper[0] - self.lower[0], self.upper[1] - self.lower[1]
         return Grid(*self.lower, columns / width, rows / height, columns, rows, *self.period, self.tilt)
 
-    def _sort(self, x: Floats, reach: Floats, cutoff: float) -> Grid:
-        """Sort points into cells of half a cutoff, and return these."""
-        # Limit: a few cells per point keep the sort linear in points.
-        columns, rows = grid_shape(self.lower, self.upper, cutoff / CELLS_PER_CUTOFF, limit=4 * self.count + 64)
-        if self._cell_start.shape[0] < columns * rows + 1:
-            self._cell_start = np.zeros((columns * rows + 1) * 3 // 2, np.int64)
-        grid = self._grid(columns, rows)
-        sort_into_cells(x, grid, self._cell, self._cell_start[: columns * rows + 1], self._order)
+    def _sort(self, x: Floats, reach: Floats) -> Floats:
+        """Sort points into cells of half a cutoff of their level, and return the levels, see `sort_into_cells`."""
+        used = cells = 0
+        largest, number = largest_below(reach, math.inf)
+        while True:
+            finer = used < LEVELS - 1 and largest > 0.0
+            smaller, less = largest_below(reach, largest / FINER) if finer else (-1.0, 0)
+            # Limit: a few cells per point keep the sort linear in points.
+            size = (2.0 * max(largest, 0.0) + self.skin) / CELLS_PER_CUTOFF
+            columns, rows = grid_shape(self.lower, self.upper, size, limit=4 * (number - less) + 64)
+            self._levels[used] = (*self._grid(columns, rows), largest, cells)
+            used, cells = used + 1, cells + columns * rows
+            if not less:
+                break
+            largest, number = smaller, less
+        levels = self._levels[:used]
+        if self._cell_start.shape[0] < cells + 1:
+            self._cell_start = np.zeros((cells + 1) * 3 // 2, np.int64)
+        sort_into_cells(x, reach, levels, self._cell, self._cell_start[: cells + 1], self._order)
         search.gather_sorted(x, reach, self._order, self._sorted)
         if self._first:
             self._order += np.int32(self._first)
-        return grid
+        return levels
 
     def state(self) -> dict[str, NDArray[np.generic]]:
         """Copies of everything that the next update depends on."""

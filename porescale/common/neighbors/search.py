@@ -6,13 +6,12 @@ import numpy as np
 
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, thread, unchecked_view
 from porescale.common.compiled.simd import WORDS, store_sorted
-from porescale.common.neighbors.cells import cell_of, tilted_image, untilted, wrapped
+from porescale.common.neighbors.cells import FIRST, REACH, cell_of, grid_of, tilted_image, untilted, wrapped
 
 
 class Criterion(NamedTuple):
-    """Which pairs are listed: largest reach and skin, m, and whether every pair is listed from both ends."""
+    """Which pairs are listed: skin, m, and whether every pair is listed from both ends."""
 
-    largest: float
     skin: float
     full: bool
 
@@ -101,22 +100,39 @@ def note_stretch(i, k0, k1, xi, yi, reach_i, ordered, order, grid, criterion, ro
 
 
 @inline
-def search_row(write, i, x, reach, ordered, order, cell_start, grid, criterion, row):
+def search_row(write, i, x, reach, ordered, order, cell_start, levels, criterion, row):
     """Number of partners of point i, and how long ``row`` must be to note them (WORDS entries spare).
 
     If ``write``, they are noted in ``row``, cell by cell; where that is too short the number is right but partners are
     missing.  x (m, 2) m, reach (m,) m: of the points whose rows are searched;  ordered (3, n) m, order (n,): x, y,
-    reach and number of all candidates in cell order;  cell_start: see `sort_into_cells`.  A pair counts when its
-    squared distance is below (reach_i + reach_j + skin)².
+    reach and number of all candidates in cell order;  cell_start, levels: see `sort_into_cells`.  A pair counts when
+    its squared distance is below (reach_i + reach_j + skin)².  Each level is looked through as far as its own largest
+    reach asks, so that few small points are candidates of a small one (Ogarko & Luding, Comput. Phys. Commun. 183
+    (2012) 931).
 
     Numbers come in tuples, arrays do not: an array taken out of a tuple is counted as a reference, here for every
     point, which cost 7 to 15 % of a search.
     """
-    columns, rows, tilt = grid.columns, grid.rows, grid.tilt
     xi = x[i, 0]
     yi = x[i, 1]
     reach_i = reach[i]
-    range_ = reach_i + criterion.largest + criterion.skin
+    found = np.int64(0)  # not 0 alone, for which note_stretch is compiled once more
+    needed = 0
+    for level in range(levels.shape[0]):
+        found, needed = search_level(
+            write, i, (xi, yi, reach_i), ordered, order, cell_start, levels, level, criterion, row, (found, needed)
+        )
+    return found, needed
+
+
+@inline
+def search_level(write, i, point, ordered, order, cell_start, levels, level, criterion, row, so_far):
+    """What `search_row` finds in one ``level``.  point : x, y, reach of i, m;  so_far : (found, needed) before it."""
+    xi, yi, reach_i = point
+    found, needed = so_far
+    grid, first_cell = grid_of(levels, level), int(levels[level, FIRST])
+    columns, rows, tilt = grid.columns, grid.rows, grid.tilt
+    range_ = reach_i + levels[level, REACH] + criterion.skin
     at_x = untilted(xi, yi, grid.lower_y, grid.period_y, tilt)
     inside_x = wrapped(at_x, grid.lower_x, grid.period_x)
     inside_y = wrapped(yi, grid.lower_y, grid.period_y)
@@ -129,8 +145,6 @@ def search_row(write, i, x, reach, ordered, order, cell_start, grid, criterion, 
     # Cells of one row follow each other in the sorted order, so a row of the window is one stretch, or two
     # where it runs over a periodic end.
     inside = min(width, columns - first_column)
-    found = np.int64(0)  # not 0 alone, for which note_stretch is compiled once more
-    needed = 0
     if tilt != 0.0 and height == rows:  # a row may hold both images of a point: all of it
         first_column, width = 0, columns
         inside = width
@@ -140,7 +154,7 @@ def search_row(write, i, x, reach, ordered, order, cell_start, grid, criterion, 
             place += rows
         elif place >= rows:
             place -= rows
-        base = place * columns
+        base = first_cell + place * columns
         if tilt != 0.0 and height < rows:  # a row beyond the end is that of an image, seen from ``tilt`` aside
             turns = np.floor((first_row + step) / rows)
             seen_x = wrapped(at_x - turns * tilt, grid.lower_x, grid.period_x)
@@ -159,7 +173,7 @@ def search_row(write, i, x, reach, ordered, order, cell_start, grid, criterion, 
 
 
 @kernel
-def fill_serial(start, partner, row, x, reach, ordered, order, cell_start, grid, criterion):
+def fill_serial(start, partner, row, x, reach, ordered, order, cell_start, levels, criterion):
     """All rows in one thread: overwrites ``start`` (n + 1,), ``partner`` and the scratch ``row``; returns the number of
     pairs and how long ``row`` must be.
 
@@ -169,7 +183,7 @@ def fill_serial(start, partner, row, x, reach, ordered, order, cell_start, grid,
     longest = 0
     for i in range(x.shape[0]):
         begin = start[i]
-        found, needed = search_row(True, i, x, reach, ordered, order, cell_start, grid, criterion, row)
+        found, needed = search_row(True, i, x, reach, ordered, order, cell_start, levels, criterion, row)
         longest = max(longest, needed)
         if needed <= row.shape[0] and begin + found <= partner.shape[0]:
             store_sorted(row, found, partner, begin)
@@ -178,13 +192,13 @@ def fill_serial(start, partner, row, x, reach, ordered, order, cell_start, grid,
 
 
 @parallel_kernel
-def count_parallel(start, row, x, reach, ordered, order, cell_start, grid, criterion):
+def count_parallel(start, row, x, reach, ordered, order, cell_start, levels, criterion):
     """Row lengths over threads, summed in order: overwrites ``start`` (n + 1,); returns what `fill_serial` does."""
     n = x.shape[0]
     longest = 0
     for number in prange(n):
         i = np.int64(number)
-        found, needed = search_row(False, i, x, reach, ordered, order, cell_start, grid, criterion, row)
+        found, needed = search_row(False, i, x, reach, ordered, order, cell_start, levels, criterion, row)
         longest = max(longest, needed)
         start[i + 1] = found
     start[0] = 0
@@ -194,13 +208,13 @@ def count_parallel(start, row, x, reach, ordered, order, cell_start, grid, crite
 
 
 @parallel_kernel
-def fill_parallel(start, partner, scratch, length, x, reach, ordered, order, cell_start, grid, criterion):
+def fill_parallel(start, partner, scratch, length, x, reach, ordered, order, cell_start, levels, criterion):
     """Rows over threads into the places that ``start`` (n + 1,) names: overwrites ``partner`` and ``scratch``, of which
     each thread has ``length`` entries, as many as `count_parallel` says."""
     for number in prange(x.shape[0]):
         i = np.int64(number)
         row = unchecked_view(scratch, thread() * length, length)
-        found, _ = search_row(True, i, x, reach, ordered, order, cell_start, grid, criterion, row)
+        found, _ = search_row(True, i, x, reach, ordered, order, cell_start, levels, criterion, row)
         store_sorted(row, found, partner, start[i])
 
 

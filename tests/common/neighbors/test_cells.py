@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from porescale.common.neighbors import PairList
-from porescale.common.neighbors.cells import Grid, cell_of, grid_shape, minimum_image, sort_into_cells, wrapped
+from porescale.common.neighbors.cells import (
+    Grid,
+    cell_of,
+    grid_shape,
+    largest_below,
+    minimum_image,
+    sort_into_cells,
+    wrapped,
+)
 
 
 def sort(x, columns=4, rows=3, period=(0.0, 0.0), compiled=True):
@@ -13,7 +21,8 @@ def sort(x, columns=4, rows=3, period=(0.0, 0.0), compiled=True):
     cell, order = np.empty(n, np.int32), np.empty(n, np.int32)
     start = np.empty(columns * rows + 1, np.int64)
     run = sort_into_cells if compiled else sort_into_cells.py_func
-    run(x, Grid(0.0, 0.0, 1.0, 1.0, columns, rows, *period), cell, start, order)
+    levels = np.array([(*Grid(0.0, 0.0, 1.0, 1.0, columns, rows, *period), 1.0, 0)])
+    run(x, np.ones(n), levels, cell, start, order)
     return cell, start, order
 
 
@@ -27,6 +36,21 @@ def test_sorting_is_stable_and_complete():
         inside = order[start[c] : start[c + 1]]
         assert np.array_equal(inside, np.flatnonzero(cell == c))  # ascending: stable
     assert np.array_equal(cell, x[:, 0].astype(int) + 4 * x[:, 1].astype(int))
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_points_of_each_level_lie_in_cells_of_their_own(compiled):
+    run, below = (it if compiled else it.py_func for it in (sort_into_cells, largest_below))
+    x, reach = np.array([[0.5, 0.5], [1.5, 0.5], [0.6, 0.5], [0.5, 0.4]]), np.array([1.0, 0.2, 0.9, 0.1])
+    assert below(reach, np.inf) == (1.0, 4)
+    assert below(reach, 0.25) == (0.2, 2)
+    assert below(reach, 0.05) == (-1.0, 0)
+    levels = np.array([(*Grid(0.0, 0.0, 0.5, 0.5, 1, 1), 1.0, 0), (*Grid(0.0, 0.0, 1.0, 1.0, 2, 1), 0.2, 1)])
+    cell, start, order = np.empty(4, np.int32), np.empty(4, np.int64), np.empty(4, np.int32)
+    run(x, reach, levels, cell, start, order)
+    assert cell.tolist() == [0, 2, 0, 1]
+    assert start.tolist() == [0, 2, 3, 4]
+    assert order.tolist() == [0, 2, 3, 1]
 
 
 def test_points_outside_fall_into_the_nearest_border_cell():

@@ -17,10 +17,10 @@ OLDER = ("start", "partner", "carried", "anchor", "anchor_reach", "builds")
 
 
 def cloud(n, seed=0, ratio=1.0, outside=0.0):
-    """Random points (n, 2) in the box, ``outside`` m beyond it, and reaches up to ``ratio`` apart."""
+    """Random points (n, 2) in the box, ``outside`` m beyond it, and reaches up to ``ratio`` apart, 1 m at most."""
     rng = np.random.default_rng(seed)
     x = rng.uniform(np.array(LOWER) - outside, np.array(UPPER) + outside, (n, 2))
-    return x, 0.1 * ratio ** rng.uniform(0.0, 1.0, n)
+    return x, 0.1 * min(1.0, 10.0 / ratio) * ratio ** rng.uniform(0.0, 1.0, n)
 
 
 def listing(n, skin, *options, seed=0, **named):
@@ -39,13 +39,14 @@ def assert_none_missing(listed, x, reach, periodic=(False, False)):
 
 @pytest.mark.parametrize("full", [False, True])
 @pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
-@pytest.mark.parametrize("ratio", [1.0, 10.0])
-def test_lists_what_the_definition_lists(full, periodic, ratio):
+@pytest.mark.parametrize(("ratio", "levels"), [(1.0, 1), (10.0, 2), (100.0, 4), (1e9, pairs.LEVELS)])
+def test_lists_what_the_definition_lists(full, periodic, ratio, levels):
     x, reach = cloud(300, ratio=ratio, outside=3.0)
     listed = PairList(300, 0.05, LOWER, UPPER, periodic, full)
     assert listed.update(x, reach)
     assert rows_of(listed) == neighbours(x, reach, 0.05, LOWER, UPPER, periodic, full)
     assert len(listed.partner) == listed.start[-1] > 20
+    assert len(listed._sort(x, reach)) == levels
 
 
 def test_a_box_of_just_two_cutoffs_is_right_and_a_thinner_one_refused():
@@ -281,11 +282,9 @@ def test_kernels_as_plain_python():
     reach *= 4.0
     listed = PairList(25, 0.1, LOWER, UPPER, (True, False), full=True)
     listed.build(x, reach)
-    grid = listed._sort(x, reach, 2.0 * reach.max() + 0.1)
-    criterion = search.Criterion(reach.max(), 0.1, True)
-    where = (x, reach, listed._sorted, listed._order, listed._cell_start, grid, criterion)
+    where = (listed._sorted, listed._order, listed._cell_start, listed._sort(x, reach), search.Criterion(0.1, True))
     start, partner = np.zeros(26, np.int64), np.empty(len(listed.partner), np.int32)
-    total, longest = search.fill_serial.py_func(start, partner, np.empty(100, np.int32), *where)
+    total, longest = search.fill_serial.py_func(start, partner, np.empty(100, np.int32), x, reach, *where)
     assert total == listed.start[-1]
     assert longest <= 100
     assert np.array_equal(start, listed.start)
