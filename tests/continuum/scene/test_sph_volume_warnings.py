@@ -3,7 +3,9 @@
 import pytest
 
 from continuum_sph.builders.report import report
+from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.water import setups as trials
+from porescale.common.schema.sections import scene_as_dict, validate
 
 
 def warnings(height, **numerics):
@@ -23,6 +25,15 @@ def test_water_with_a_surface_that_changes_its_volume_is_warned_of(numerics, sai
     (text,) = warnings(0.5, **numerics)
     assert said in text
     assert not warnings(1.0, **numerics)  # it fills the tank
+
+
+def test_gradients_of_water_in_ground_are_what_they_are_whatever_is_asked_for():
+    soil = {"permeability": 1e-3, "held": True, "body": [{"outline": [[0, 0], [1, 0], [1, 0.3], [0, 0.3]]}]}
+    for gradient, said in (("corrected", 1), ("plain", 0)):
+        scene = trials.column_scene(0.05, tank=(1.0, 1.0), column=(1.0, 0.5), gradient=gradient)
+        whole = validate(Scene, {**scene_as_dict(scene), "soil": soil})
+        assert sum("changes nothing with ground" in text for text in report(whole).warnings) == said
+        assert not any("splashes" in text for text in report(whole).warnings)
 
 
 @pytest.mark.parametrize("numerics", [{}, {"gradient": "corrected", "shifting": 2.0}])
