@@ -1,5 +1,6 @@
 """The case from grains to the continuum: a bed and a layer of its soil consolidate as Terzaghi says."""
 
+import json
 import math
 from dataclasses import replace
 from types import ModuleType
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 from porescale.output.case import expected
+from tests.reference.continuum.growing_layer import half_times
 from tests.reference.folders import CASES, allowed, script
 
 HALVES = 0.196731, 0.275038
@@ -110,3 +112,17 @@ def test_a_bed_lets_its_water_out_as_the_case_says_and_one_of_twice_the_k_does_n
     assert abs(seen() - value) < one
     # the twin: K goes with lambda to the power of -10, so that 0.75 has 1.9 times that of 0.8
     assert abs(seen("grains.hydraulic_radius_ratio=0.75") - value) > 3 * one
+
+
+def test_half_times_of_grains_are_those_of_a_layer_of_one_stiffness_and_not_of_one_that_grows():
+    numbers = json.loads((CASES / "micro_to_macro" / "recorded.json").read_text(encoding="utf-8"))["numbers"]
+    names = "half of the excess, T_v of {}", "half settled, T_v of {}"
+    excess, settled = (numbers[it.format("grains over soil")] * numbers[it.format("soil")] for it in names)
+    bars = [allowed("micro_to_macro", it.format("grains over soil"))[1] for it in names]
+    bar = math.hypot(*bars) * excess / settled
+    (one, two), growing = half_times(0.0, 40), half_times(0.1, 40)
+    # the floor's pressure is a line through those dy/2 and 3 dy/2 above it, 3/8 dy² u'' off, u'' = pi²/4 u = -du/dT_v:
+    # half is left 3/8 dy² later, 1.9 dy² of the time
+    assert (one, two) == pytest.approx(HALVES, rel=1.9 * 40**-2)
+    assert excess / settled == pytest.approx(one / two, abs=bar)
+    assert abs(excess / settled - growing[0] / growing[1]) > 1.5 * bar
