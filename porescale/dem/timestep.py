@@ -3,7 +3,10 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from porescale.common.core.ranges import Range, require_in_range
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import Clumps, fastest
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs
@@ -49,6 +52,17 @@ def packing_factor(normal: float, tangential: float, rolling: float = 0.0) -> fl
     Rolling springs, k_r/2 R^2 (q_i - q_j)^2 with R <= r, add 24 k_r/m to rotation in the same way.
     """
     return max(NEIGHBOURS * (normal + tangential), 4.0 * NEIGHBOURS * (tangential + rolling))
+
+
+def crowded(radius: Floats, safety: float = SAFETY) -> Floats:
+    """How much heavier (n,) than one mass for all discs of ``radius`` (n,) m must be for the step of that mass.
+
+    Of the smallest, pi/arcsin(r0/(r + r0)) fit round a disc, where the step counts on NEIGHBOURS; ``safety`` leaves
+    room for 1/safety² times as many.  Not needed of discs of one density, whose mass grows with their area.
+    """
+    smallest = radius.min()
+    made: Floats = np.maximum(1.0, safety**2 / NEIGHBOURS * np.pi / np.arcsin(smallest / (radius + smallest)))
+    return made
 
 
 def packing_limit(law: ContactLaw, mass: float, radius: float | None = None) -> float:

@@ -17,7 +17,7 @@ from porescale.dem.measures.energy import elastic
 from porescale.dem.motion import leapfrog as kick
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.periodic_cell import Still
-from porescale.dem.timestep import packing_limit
+from porescale.dem.timestep import SAFETY, crowded, packing_factor, packing_limit
 from tests.reference.dem.dem import Body, World
 from tests.reference.dem.restarted import differing, saved_on_the_way
 
@@ -331,3 +331,16 @@ def test_no_grains_is_a_system_too():
     grains.step(1e-3, count=5)
     grains.check()
     assert measure.coordination(grains) == 0.0
+
+
+def test_a_disc_among_many_small_ones_of_its_mass_is_as_heavy_as_the_step_asks():
+    radius = np.array([1.0, 2.0, 20.0])
+    heavier = crowded(radius)
+    assert heavier[:2].tolist() == [1.0, 1.0]  # six, and nine round twice the radius: 0.8**-2 of six
+    for r, factor in zip(radius, heavier, strict=True):
+        count = int(np.pi / np.arcsin(1.0 / (1.0 + r)))  # discs of 1 that touch it and not each other
+        angle = 2.0 * np.pi * np.arange(count) / count
+        frequency = 2.0 * np.sum(np.cos(angle) ** 2) / factor  # along x, of contacts twice as stiff, as the bound has it
+        allowed = packing_factor(1.0, 0.0) / SAFETY**2
+        assert frequency < 1.001 * allowed
+        assert r < 20.0 or frequency * factor > 5.0 * allowed  # the check that must fail: 65 of them, one mass

@@ -13,9 +13,11 @@ from porescale.builders.derive import derive
 from porescale.builders.initial.packing import settled_void_ratio
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.porosity import porosity, void_ratio
 from porescale.dem.measures.region import Region
-from porescale.dem.prepare.compaction import mean_stress, write_packing
+from porescale.dem.measures.survey import max_overlap
+from porescale.dem.prepare.compaction import DEEPEST, mean_stress, write_packing
 from tests.reference.dem.grading import percent_finer
 from tests.reference.scenes import dry, refusals, table
 
@@ -55,6 +57,21 @@ def test_grains_follow_their_grading_curve(settle):
     own = 100 * 0.0009**2 / np.sum((2 * radius) ** 2)  # a disc of the largest, of some seventy
     assert percent_finer(radius, np.array([0.0006]))[0] == pytest.approx(40.0, abs=own)
     assert scene.grains.packing.diameter == pytest.approx(2 * radius.mean(), rel=1e-12)
+
+
+@pytest.mark.parametrize(("way", "large", "small"), [("settled", 3, 800), ("pressed", 6, 1500)])
+def test_sizes_of_one_to_twenty_come_to_rest(way, large, small):
+    given = {"sizes": [["3.2 mm", large], ["0.16 mm", small]], "diameter": None, "packing_fraction": None}
+    if way == "pressed":
+        grains = grains_of(pressed(**given))
+    else:
+        keys = {**BOX, **given, "settle": True}
+        grains = grains_of(dry(gate=None, **{f"grains__packing__{key}": value for key, value in keys.items()}))
+    radius = np.sort(grains.discs.radius)
+    np.testing.assert_allclose(radius / radius[0], np.repeat([1.0, 20.0], [small, large]), rtol=1e-12)
+    assert np.abs(grains.discs.velocity).max() == 0.0
+    assert contacts(grains).count > len(radius)  # it stands, by more contacts than grains
+    assert 0.5 * max_overlap(grains).share < DEEPEST
 
 
 def test_lognormal_grains_and_void_ratio():

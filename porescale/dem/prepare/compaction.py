@@ -34,6 +34,7 @@ from porescale.dem.measures.stress import contact_stress, principal
 from porescale.dem.measures.survey import max_overlap
 from porescale.dem.prepare.obstacles import NOTHING, Obstacles
 from porescale.dem.prepare.on_disk import once
+from porescale.dem.timestep import crowded
 
 START = 0.7  # packing fraction at which discs are placed: short of where friction can hold them
 DRAG = 0.02  # background damping per step: lets discs that are pushed travel, ends waves between two looks
@@ -173,9 +174,9 @@ class Compactor:
         else:
             placed = place(self.lower, self.upper, radii=scale * radius, periodic=self.periodic, seed=self.seed)
         grains = self.grains(placed.position, placed.radius)
-        # The same mass for all while they are prepared: small discs would else set the step, and large ones crawl.
+        # Nearly one mass for all while they are prepared: small discs would else set the step, and large ones crawl.
         d, free = grains.discs, self._free(grains)
-        d.mass[:free] = d.mass[:free].mean()
+        d.mass[:free] = d.mass[:free].mean() * crowded(d.radius[:free])
         d.inertia[:free] = 0.5 * d.mass[:free] * d.radius[:free] ** 2
         return grains, scale
 
@@ -390,8 +391,7 @@ def _judge_suffix(path: Path) -> None:
 
 def _judged(path: Path, position: Floats, radius: Floats) -> tuple[Floats, Floats]:
     """The given positions and radii, if every row is a valid circle; else InputError."""
-    bad = ~np.isfinite(position).all(axis=1) | ~(radius > 0.0) | ~np.isfinite(radius)
-    if bad.any():
+    if (bad := ~np.isfinite(position).all(axis=1) | ~(radius > 0.0) | ~np.isfinite(radius)).any():
         k = int(bad.argmax())
         problem = f"circle {k} is ({position[k, 0]:g}, {position[k, 1]:g}) with radius {radius[k]:g}"
         raise InputError(Fault("file", str(path), problem, "m", "places that are finite, radius > 0"))
