@@ -22,7 +22,7 @@ HALF = 0.5
 """Interval over mean above which a number that a continuum takes over is hardly known."""
 MISFIT = 2.0
 """Intervals by which a law may miss a measured sine: with four packings one in 130 is that far off by chance."""
-HANDED_OVER = ("peak friction angle", "critical friction angle", "stiffness", "permeability")
+HANDED_OVER = ("peak friction angle", "critical friction angle", "stiffness", EXPONENT, "permeability")
 
 
 def doubts(rows: Sequence[Mapping[str, float]], found: Mapping[str, Known]) -> list[str]:
@@ -45,6 +45,8 @@ def doubts(rows: Sequence[Mapping[str, float]], found: Mapping[str, Known]) -> l
         text = found[EXPONENT].text()
         made.append(f"{EXPONENT} {text} is not between 0 and 1 beyond its bar: none is handed over; more packings")
     for name in HANDED_OVER:
+        if name == EXPONENT and not grows(found):
+            continue
         if name in found and found[name].interval > HALF * abs(found[name].mean):
             made.append(f"{name} {found[name].text()} is hardly known: more packings, or larger ones")
     return made + _critical(found)

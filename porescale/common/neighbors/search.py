@@ -107,8 +107,7 @@ def search_row(write, i, x, reach, ordered, order, cell_start, levels, criterion
     missing.  x (m, 2) m, reach (m,) m: of the points whose rows are searched;  ordered (3, n) m, order (n,): x, y,
     reach and number of all candidates in cell order;  cell_start, levels: see `sort_into_cells`.  A pair counts when
     its squared distance is below (reach_i + reach_j + skin)².  Each level is looked through as far as its own largest
-    reach asks, so that few small points are candidates of a small one (Ogarko & Luding, Comput. Phys. Commun. 183
-    (2012) 931).
+    reach asks, so that a small point has few candidates (Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931).
 
     Numbers come in tuples, arrays do not: an array taken out of a tuple is counted as a reference, here for every
     point, which cost 7 to 15 % of a search.
