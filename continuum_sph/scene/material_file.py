@@ -161,7 +161,7 @@ def with_material(table: Any, folder: Path | None) -> Any:
     taken = file.soil.model_dump(exclude_none=True)
     state = file.strength.peak if soil.get("strength") == "peak" else file.strength.critical
     if soil.get("stiffness") is not None:  # how E follows the stress belongs to the E that is given
-        taken = {key: value for key, value in taken.items() if key not in ("reference", "exponent")}
+        taken.pop("exponent", None)
     taken |= state.model_dump()
     origin: dict[str, Any] = {"file": name, "sha256": digest, "made": file.made}
     origin["measured"] = {key: (it.mean, it.standard_error) for key, it in file.measured.items()}

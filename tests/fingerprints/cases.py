@@ -108,6 +108,7 @@ NO_SUBJECT = {
     "permeameter/trade.toml": "of a study, not a scene",
     "piv_synthetic/windows.py": "a study of the pairs of the script beside it",
     "rectangular_dam/trade.toml": "of a study, not a scene",
+    "saturated_levee/trade.toml": "of a study, not a scene",
 }
 """Files of cases that have no fingerprint of their own."""
 
