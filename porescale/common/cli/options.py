@@ -49,6 +49,13 @@ def use_threads(count: int | None) -> int:
     return set_threads(count)
 
 
+def suit_threads(count: int | None, model: Any) -> None:
+    """One thread for a ``model`` that is too small for a second to gain anything, where no ``count`` is asked for: two
+    would wait for each other, beside other programs ten times as long as they work."""
+    if count is None and getattr(model, "small", False):
+        use_threads(1)
+
+
 def require_scene(given: Path, program: str) -> Path:
     """The scene file that ``given`` leads to: a file, a folder, or the name of a case that ``program`` runs.
 
