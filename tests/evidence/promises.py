@@ -6,12 +6,11 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 from porescale.common.evidence.files import markdown_table
-from porescale.common.studies.front import Front
 from tests.architecture.sources import ROOT
 
 BUDGETS = "1min", "4min"
@@ -72,10 +71,10 @@ def ended(case: str, package: str, budget: str, loaded: bool) -> Kept:
     return Kept(case, budget, picked[1], loaded, float(took[1]), float(took[2]))
 
 
-def measured(found: dict[str, Front], packages: dict[str, str]) -> list[Kept]:
-    """Every command, one after the other: each case with each budget that picks another point."""
+def measured(cases: Iterable[str], packages: dict[str, str]) -> list[Kept]:
+    """Every command, one after the other: each of ``cases`` with each budget that picks another point."""
     rows: list[Kept] = []
-    for case in found:
+    for case in cases:
         if case in NO_RUN:
             continue
         for loaded in (False, True):
@@ -88,9 +87,12 @@ def measured(found: dict[str, Front], packages: dict[str, str]) -> list[Kept]:
     return rows
 
 
-def lines(rows: list[Kept], today: str, processor: str) -> list[str]:
-    """The table as lines of Markdown."""
-    run = [it for it in rows if it.took == it.took]
-    good = sum(abs(it.took / it.expected - 1.0) <= WITHIN for it in run)
-    said = f"{good} of {len(run)} commands within {WITHIN:.0%}. On {processor}, {os.cpu_count()} cores, {today}."
-    return [*markdown_table(HEADER, [it.row() for it in rows]), "", said]
+def lines(rows: list[Kept], before: Iterable[str], today: str, processor: str) -> list[str]:
+    """The table as lines of Markdown, with the rows of other cases of the table ``before``."""
+    cells = [it.row() for it in rows]
+    new, old = {row[0] for row in cells}, [tuple(line.strip("| \n").split(" | ")) for line in before]
+    cells += [(*row, *[""] * (len(HEADER) - len(row))) for row in old if row[0].startswith("[") and row[0] not in new]
+    cells.sort(key=lambda row: row[0])
+    good, run = (sum(row[-1] in words for row in cells) for words in (("yes",), ("yes", "no")))
+    said = f"{good} of {run} commands within {WITHIN:.0%}. On {processor}, {os.cpu_count()} cores, to {today}."
+    return [*markdown_table(HEADER, cells), "", said]
