@@ -109,6 +109,11 @@ class Softening:
         require_in_range("material.softening", vars(self), SOFTENING_RANGES)
 
 
+def unconfined(modulus: float, poisson: float) -> float:
+    """E (Pa) of what has the ``modulus`` M = E (1 - ν)/{(1 + ν)(1 - 2ν)} (Pa) where it cannot widen."""
+    return modulus * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson)
+
+
 @dataclass(frozen=True)
 class Material:
     """stiffness : E0, Pa at the mean stress ``reference`` (p0, Pa);  exponent : m;  poisson : ν;  modulus : "plane

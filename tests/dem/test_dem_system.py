@@ -342,5 +342,5 @@ def test_a_disc_among_many_small_ones_of_its_mass_is_as_heavy_as_the_step_asks()
         angle = 2.0 * np.pi * np.arange(count) / count
         frequency = 2.0 * np.sum(np.cos(angle) ** 2) / factor  # along x, contacts twice as stiff: see packing_factor
         allowed = packing_factor(1.0, 0.0) / SAFETY**2
-        assert frequency < 1.001 * allowed
+        assert frequency <= allowed * (1.0 + 1e-12)  # round-off of 65 terms
         assert r < 20.0 or frequency * factor > 5.0 * allowed  # the check that must fail: 65 of them, one mass

@@ -9,6 +9,8 @@ from porescale.common.evidence import files
 from porescale.common.studies.front import Front, FrontPoint, read_front
 from tests.architecture.sources import ROOT
 
+SCENES = {"micro_to_macro": "column.toml"}
+"""Scene files of fronts, where they are not scene.toml."""
 DECADES = (1.0, 10.0, 100.0)
 """Core-seconds of steps up to which the best point is looked for."""
 

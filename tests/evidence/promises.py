@@ -12,12 +12,11 @@ from typing import NamedTuple
 
 from porescale.common.evidence.files import markdown_table
 from tests.architecture.sources import ROOT
+from tests.evidence.fronts import SCENES
 
 BUDGETS = "1min", "4min"
 WITHIN = 0.3
 """Share of the expected seconds by which a command may be off."""
-SCENES = {"micro_to_macro": "micro_to_macro/column.toml"}
-"""Of cases whose front is not that of scene.toml."""
 NO_RUN = ("piv_synthetic",)
 """Cases whose front is of pairs of pictures."""
 HEADER = "case", "budget", "picked", "machine", "expected, s", "took, s", "off by", f"within {WITHIN:.0%}"
@@ -59,7 +58,7 @@ def busy(on: bool) -> Iterator[None]:
 
 def ended(case: str, package: str, budget: str, loaded: bool) -> Kept:
     """The end of one command;  raises RuntimeError for another than a finished run or a refused budget."""
-    scene = ROOT / "cases" / SCENES.get(case, case)
+    scene = ROOT / "cases" / case / SCENES.get(case, "scene.toml")
     with busy(loaded), tempfile.TemporaryDirectory() as folder:
         words = [sys.executable, "-m", package.replace("-", "_"), "run", str(scene), "--budget", budget]
         run = subprocess.run([*words, "--out", str(Path(folder) / "run")], cwd=ROOT, capture_output=True, text=True)

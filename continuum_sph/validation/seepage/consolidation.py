@@ -8,6 +8,7 @@ import numpy as np
 
 from continuum_sph.seepage import Resistance, Seepage
 from continuum_sph.soil import Material, SoilFlow
+from continuum_sph.soil.material import unconfined
 from continuum_sph.validation.seepage.biot_column import excess_pressures
 from continuum_sph.validation.seepage.setups import COLUMNS, GRAINS, WATER, water_in
 from continuum_sph.validation.soil.setups import in_tank
@@ -43,9 +44,8 @@ class Consolidation:
 
     @property
     def stiffness(self) -> float:
-        """E, Pa, of M = E (1 - ν)/{(1 + ν)(1 - 2ν)}."""
-        nu = self.poisson
-        return self.modulus * (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu)
+        """E, Pa."""
+        return unconfined(self.modulus, self.poisson)
 
     def seconds(self, factor: float) -> float:
         """Time (s) of a time factor T_v = c_v t/H²."""

@@ -12,6 +12,7 @@ from continuum_sph.builders.parts.sheet_pile import NAME
 from continuum_sph.builders.parts.soil import SoilPart
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.soil.material import unconfined
 from continuum_sph.validation.seepage.setups import GRAINS, WATER
 from continuum_sph.validation.seepage.sheet_pile import SheetPile
 from porescale.common.core.constants import GRAVITY
@@ -114,7 +115,7 @@ class Heave:
             "soil": {
                 "density": (1.0 - self.porosity) * self.grains,
                 "porosity": self.porosity,
-                "stiffness": self.modulus * (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu),
+                "stiffness": unconfined(self.modulus, nu),
                 "poisson": nu,
                 "friction_angle": f"{self.friction} degree",
                 "dilatancy_angle": f"{self.dilatancy} degree",

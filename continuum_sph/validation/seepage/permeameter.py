@@ -8,6 +8,7 @@ import numpy as np
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.seepage import Frame, Resistance, Seepage
 from continuum_sph.soil import Material, SoilFlow
+from continuum_sph.soil.material import unconfined
 from continuum_sph.soil.stress import YY
 from continuum_sph.validation.seepage.setups import COLUMNS, GRAINS, WATER, water_in
 from continuum_sph.validation.soil.setups import in_tank
@@ -56,8 +57,9 @@ class Permeameter:
         x = square_lattice((0.0, 0.0), size, spacing)
         nu, ground = 0.3, None
         if not self.held:
-            stiff = self.modulus * (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu)
-            material = Material(stiff, (1.0 - self.porosity) * GRAINS, nu, porosity=self.porosity)
+            material = Material(
+                unconfined(self.modulus, nu), (1.0 - self.porosity) * GRAINS, nu, porosity=self.porosity
+            )
             weight = ((1.0 - self.porosity) * (GRAINS - WATER) - first * WATER) * GRAVITY
             upright, k0 = weight * (self.height - x[:, 1]), material.rest
             stress = upright[:, None] * np.array([k0, 1.0, 0.0, nu * (1.0 + k0)])

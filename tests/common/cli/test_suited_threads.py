@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+import continuum_sph as cs
 from continuum_sph.builders.simulation import ALONE
 from continuum_sph.validation.water.setups import column_scene
 from porescale.common.cli.options import suit_threads, use_threads
@@ -29,8 +30,6 @@ def test_one_thread_is_taken_only_for_what_is_small_and_where_none_are_asked_for
 
 
 def test_a_scene_of_few_particles_is_small_and_one_of_many_is_not():
-    import continuum_sph as cs
-
     for spacing, small in ((0.05, True), (0.02, False)):  # 20 by 10, 50 by 25
         scene = column_scene(spacing, tank=(1.0, 1.0), column=(1.0, 0.5))
         model = cs.build(scene)

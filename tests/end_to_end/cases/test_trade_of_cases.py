@@ -15,12 +15,11 @@ from porescale.common.schema.sections import load
 from porescale.common.studies.front import read_front
 from porescale.common.studies.trade_plan import read_plan
 from porescale.output.case import expected
+from tests.evidence.fronts import SCENES
 from tests.reference.folders import CASES, script
 
 PLANS = sorted(CASES.glob("*/trade.toml"))
 FRONTS = sorted(CASES.glob("*/front.json"))
-SCENES = {"micro_to_macro": "column.toml"}
-"""Scene files of plans, where they are not scene.toml."""
 
 
 @pytest.mark.parametrize("plan", PLANS, ids=lambda path: path.parent.name)
