@@ -25,7 +25,7 @@ from continuum_sph.water.fluids import LIQUID
 from continuum_sph.water.kernel_correction import TRACE
 from continuum_sph.water.smoothing import kernel_kind, slope_scale, slope_shape
 from continuum_sph.water.state import X, Y
-from porescale.common.compiled.jit import parallel_kernel, prange
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_four, gather_rows, maximum, reduce_add, sqrt, zeros
 
 OPEN = 1.5  # trace of M: 1.97 on a lattice, 1.2 in the outermost row of a level surface, 0.9 in a corner
@@ -53,6 +53,9 @@ def shift(fluid, record, near, material, table, matrix, concentration, drift, st
             continue
         ux = -strength * concentration[i, 0]
         uy = -strength * concentration[i, 1]
+        if not lists_open(i, near, matrix):
+            drift[i, 0], drift[i, 1] = at_most(ux, uy, most)
+            continue
         falls_x = zeros()
         falls_y = zeros()
         open_by = zeros()
@@ -75,7 +78,21 @@ def shift(fluid, record, near, material, table, matrix, concentration, drift, st
             along = (ux * nx + uy * ny) / length
             ux -= along * nx
             uy -= along * ny
-        size = np.sqrt(ux * ux + uy * uy)
-        scale = most / size if size > most else 1.0
-        drift[i, 0] = scale * ux
-        drift[i, 1] = scale * uy
+        drift[i, 0], drift[i, 1] = at_most(ux, uy, most)
+
+
+@inline
+def lists_open(i, near, matrix):
+    """Whether a partner of particle i in the fluids, within reach or in the skin of the list, is at a free surface."""
+    for k in range(np.uint64(near.start[i]), np.uint64(near.split[i])):
+        if matrix[np.uint64(near.partner[k]), TRACE] < OPEN:
+            return True
+    return False
+
+
+@inline
+def at_most(x, y, most):
+    """The vector (x, y), shortened to the length ``most`` where it is longer."""
+    size = np.sqrt(x * x + y * y)
+    scale = most / size if size > most else 1.0
+    return scale * x, scale * y

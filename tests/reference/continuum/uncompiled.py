@@ -11,6 +11,7 @@ from continuum_sph.water import (
     image_walls,
     kernel_correction,
     leapfrog,
+    parameters,
     pressure_walls,
     rates,
     rates_fluid,
@@ -22,8 +23,8 @@ from continuum_sph.water import (
 )
 
 WATER = (
-    bundles, density, fluids, image_walls, kernel_correction, leapfrog, pressure_walls, rates,
-    rates_fluid, rates_walls, shifting, smoothing, step, viscosity,
+    bundles, density, fluids, image_walls, kernel_correction, leapfrog, parameters, pressure_walls,
+    rates, rates_fluid, rates_walls, shifting, smoothing, step, viscosity,
 )  # fmt: skip
 """Modules of the kernels that a flow of water calls."""
 
