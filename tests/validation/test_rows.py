@@ -16,6 +16,7 @@ DAILY = {
     "coupling.drag_balances_what_drives":
         "validation/coupling/test_coupling_driven.py test_without_the_push_a_disc_bears_less_than_what_drives",
     "coupling.square_arrays": "validation/coupling/test_coupling_arrays.py test_a_square_array_has_its_drag",
+    "coupling.hexagonal_arrays": "validation/coupling/test_coupling_arrays.py test_a_hexagonal_array_has_its_drag",
     "coupling.fast_start": "coupling/test_coupling_rim.py test_a_cylinder_set_moving_at_once_has_its_drag",
     "coupling.taylor_couette_torque":
         "validation/coupling/test_coupling_rings.py test_a_disc_a_tenth_of_a_cell_too_wide_misses_the_torque",

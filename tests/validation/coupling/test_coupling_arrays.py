@@ -69,6 +69,11 @@ def test_a_square_array_has_its_drag():
     assert found.error <= tolerance("coupling.square_arrays")
 
 
+def test_a_hexagonal_array_has_its_drag():
+    found = lab.hexagonal({(box := ((15, 26), 0.4)): lab.HEXAGONAL[box]}, lab.REQUIRED, relaxation_time=1.0)
+    assert found.error <= tolerance("coupling.hexagonal_arrays")
+
+
 def test_places_are_spread_over_a_quarter_of_a_cell():
     at = np.array(lab.places(3))
     assert at.shape == (9, 2)
