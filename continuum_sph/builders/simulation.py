@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from porescale.common.pictures.look import Look
 
 P = TypeVar("P", bound=Part)
-ALONE = 1000
-"""Particles below which two threads are no faster than one (measured: 320 as fast, 1280 1.2 times, 5120 1.8 times)."""
 
 
 def assemble(scene: Scene) -> Assembly:
@@ -79,11 +77,6 @@ class Simulation(ShownSimulation):
     def step_seconds(self) -> float:
         """Length of the next step, s."""
         return float(self.flow.next_step)
-
-    @property
-    def small(self) -> bool:
-        """Whether it is too small for a second thread to gain anything."""
-        return len(self.motion()[0]) < ALONE
 
     def motion(self) -> tuple[Floats, Floats]:
         """Positions (n, 2) m and velocities (n, 2) m/s of the particles; views, or copies of water in soil."""

@@ -100,11 +100,6 @@ class BaseSimulation(ABC):
         """Positions (n, 2) m and velocities (n, 2) m/s of the discs or particles, as they lie in memory."""
 
     @property
-    def small(self) -> bool:
-        """Whether it is too small for a second thread to gain anything."""
-        return False
-
-    @property
     @abstractmethod
     def radii(self) -> Floats:
         """Radii of the grains, or half the spacing of the particles, (n,) m; a copy."""

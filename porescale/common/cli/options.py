@@ -16,7 +16,7 @@ Quality = Annotated[
 Settings = Annotated[
     list[str] | None, Parameter(name="--set", help="section.key=value, over the scene and its quality; repeatable")
 ]
-Threads = Annotated[int | None, Parameter(help="threads of the kernels; all cores if not given")]
+Threads = Annotated[int | None, Parameter(help="most threads of the kernels; all cores if not given")]
 ThreadsOfEach = Annotated[int | None, Parameter(help="threads of the kernels")]
 """Of what runs on one thread if not told otherwise."""
 Json = Annotated[bool, Parameter(name="--json", help="print JSON instead of tables")]
@@ -47,13 +47,6 @@ def use_threads(count: int | None) -> int:
     from porescale.common.compiled.jit import set_threads
 
     return set_threads(count)
-
-
-def suit_threads(count: int | None, model: Any) -> None:
-    """One thread for a ``model`` that is too small for a second to gain anything, where no ``count`` is asked for: two
-    would wait for each other, beside other programs ten times as long as they work."""
-    if count is None and getattr(model, "small", False):
-        use_threads(1)
 
 
 def require_scene(given: Path, program: str) -> Path:

@@ -22,18 +22,10 @@ FREE = "title", "output.", "quality_default"
 
 
 def pick(
-    package: Package,
-    scene: Path,
-    error: str | None,
-    budget: str | None,
-    settings: Sequence[str],
-    *,
-    quiet: bool,
-    threads: int | None = None,
+    package: Package, scene: Path, error: str | None, budget: str | None, settings: Sequence[str], *, quiet: bool
 ) -> Choice:
     """The point, printed on stderr with expected cost and error; InputError on wrong
     options, no front, or nothing that fits."""
-    from porescale.common.cli.options import suit_threads, use_threads
     from porescale.common.core.machine import age
     from porescale.common.duration.expected import besides
     from porescale.common.schema.scene_file import find
@@ -49,15 +41,7 @@ def pick(
         """The beginning of the point's scene, and the time it is to simulate, s, where its scene says that."""
         scene = load(file, package.scene(), quality=point.quality, overrides=(*point.settings, *settings))
         more = besides(package.report_of(scene).work)  # what contradicts itself is refused
-
-        def build() -> Any:
-            """The model, on as many threads as `run` takes for it."""
-            use_threads(threads)
-            model = package.build(scene)
-            suit_threads(threads, model)
-            return model
-
-        return begun(build, _end(scene), more)
+        return begun(lambda: package.build(scene), _end(scene), more)
 
     try:
         choice = choose(front, allowed, seconds, here, age)

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 from porescale.common.api.folders import check_folder, named_folder
 from porescale.common.api.run_scene import card_of, check_scene_resume
 from porescale.common.cli import pick
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, suit_threads, use_threads
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.machine import age, peak_bytes
@@ -56,7 +56,7 @@ def command(package: Package) -> Callable[..., int]:
         if error is not None or budget is not None:
             _require_free_choice(quality, resume)
             use_threads(threads)
-            chosen = pick.pick(package, place, error, budget, settings or (), quiet=quiet, threads=threads)
+            chosen = pick.pick(package, place, error, budget, settings or (), quiet=quiet)
             settings = [*chosen.point.settings, *(settings or ())]
         level = chosen.point.quality if chosen else quality
         read = load(place, package.scene(), quality=level, overrides=settings or ())
@@ -75,7 +75,6 @@ def command(package: Package) -> Callable[..., int]:
         with package.rehearsed(read):
             with Watch(read.name, 0.0, _end(read), quiet=quiet):
                 model = package.build(read)
-                suit_threads(threads, model)
             outcome = package.drive(model, folder, read, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
         if not quiet:
             print(summary(package.name, read.name, folder, outcome))

@@ -12,6 +12,7 @@ from porescale.common.core.atomic import clean, folder_in_use, owned
 from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.duration.expected import FINISHING, RECORDING, STEPS
 from porescale.common.duration.quiet import moment, quiet_seconds, share
+from porescale.common.duration.threads import Threads
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
 from porescale.common.record.check_state import CHECKPOINT, check_state
@@ -168,8 +169,8 @@ def _watched(
     model, began = run.model, moment()
     stop, until_stepped = stopping
     try:
-        with until_stepped:
-            spent = _loop(run, record, stop, watch)
+        with until_stepped, Threads() as threads:
+            spent = _loop(run, record, stop, watch, threads)
         stepped = moment()
         watch.enter("joining snapshots")
         record.close(model, cards.RUNNING)
@@ -228,8 +229,8 @@ class _Spent:
         return steps / seconds if seconds > 0 else 0.0
 
 
-def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> _Spent:
-    """Advance to the end; returns what was spent in the model's steps."""
+def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch, threads: Threads) -> _Spent:
+    """Advance to the end, on as many ``threads`` as pay; returns what was spent in the model's steps."""
     model, rate, spent = run.model, 0.0, _Spent()
     if record.saved_step is None:
         model.check()
@@ -253,6 +254,8 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> _Spent:
         record.cost.block(model.step - before, clock.process_time() - busy)
         rate = (model.step - before) / max(wall, 1e-9)
         spent.block(model.step - before, wall)
+        if TURNS.seconds == compiled:
+            threads.spent(model.step - before, wall)
         spent.compiling += TURNS.seconds - compiled
         watch.update(model.step, model.time)
         _after_block(run, record)

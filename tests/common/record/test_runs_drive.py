@@ -9,10 +9,12 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
+from porescale.common.compiled import jit
 from porescale.common.core.atomic import owned
 from porescale.common.core.errors import InputError, PorescaleWarning, Unstable
+from porescale.common.duration.threads import Threads
 from porescale.common.record import card as cards
-from porescale.common.record import snapshots
+from porescale.common.record import drive, snapshots
 from porescale.common.record.checkpoint import read_checkpoint
 from porescale.common.record.model import Model
 from porescale.common.record.open_run import open_run
@@ -47,6 +49,21 @@ def refused(words: str) -> Iterator[None]:
 
 def test_the_toy_is_a_model():
     assert isinstance(Toy(), Model)
+
+
+def test_a_run_says_what_its_steps_took_and_ends_with_the_threads_it_had(tmp_path, monkeypatch):
+    told, before = [], jit.threads()
+
+    class Told(Threads):
+        def spent(self, steps: int, seconds: float) -> None:
+            told.append((steps, seconds))
+            self.take(1)
+
+    monkeypatch.setattr(drive, "Threads", Told)
+    run_toy(tmp_path, duration=0.1)
+    assert sum(steps for steps, _ in told) == 100
+    assert min(seconds for _, seconds in told) > 0.0
+    assert jit.threads() == before
 
 
 @pytest.mark.parametrize("varying", [False, True])
