@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time as clock
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from numbers import Integral
@@ -15,6 +14,7 @@ import numpy as np
 from porescale.common.api.hooks import EveryHook, ForceFunction, ForceHook, Hook, SampleFunction, when
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.ranges import is_number
+from porescale.common.duration.threads import Threads
 from porescale.common.record.columns import Columns
 from porescale.common.record.model import Snapshot, variable_step
 from porescale.common.record.record import MADE_LATER
@@ -270,13 +270,13 @@ class BaseSimulation(ABC):
                 if it.schedule.due(self.step, self.time) if scheduled else it.last_step != self.step:
                     it.sample(scheduled=scheduled)
 
-        with polite_stop() as stop:
+        with polite_stop() as stop, Threads() as threads:
             if self.step == 0 and any(it.last_step < 0 for it in samplers):
                 sample(scheduled=True)
             while not ended():
-                began, before = clock.perf_counter(), self.step
-                self.advance(block(self, last, schedules, rate))
-                rate = (self.step - before) / max(clock.perf_counter() - began, 1e-9)
+                before = self.step
+                took = threads.advance(self, block(self, last, schedules, rate))
+                rate = (self.step - before) / max(took, 1e-9)
                 if watch is not None:
                     watch.update(self.step, self.time)
                 if self.step % CHECK_EVERY == 0:

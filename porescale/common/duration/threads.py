@@ -9,9 +9,15 @@ A number is timed, then half as many, one or twice as many in turns, then the fi
 busier or quieter on the way changes nothing.  Where nothing was faster the next is tried after twice the time.
 """
 
+import time as clock
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from porescale.common.compiled import jit
+from porescale.common.compiled.turns import TURNS
+
+if TYPE_CHECKING:
+    from porescale.common.record.model import Model
 
 WINDOW = 0.2
 """Seconds of steps for which a number of threads is timed: some turns of a busy system, of 4 to 100 ms."""
@@ -47,8 +53,17 @@ class Threads:
         """Threads that were found to be fastest so far."""
         return self.counts[self.at]
 
+    def advance(self, model: "Model", steps: int) -> float:
+        """Advance a model, and count it unless kernels were compiled; returns seconds of the wall clock."""
+        began, before, compiled = clock.perf_counter(), model.step, TURNS.seconds
+        model.advance(steps)
+        took = clock.perf_counter() - began
+        if TURNS.seconds == compiled:
+            self.spent(model.step - before, took)
+        return took
+
     def spent(self, steps: int, seconds: float) -> None:
-        """Count ``steps`` that took so many ``seconds``, without compiling; now and then take another number."""
+        """Count ``steps`` that took so many ``seconds``; now and then take another number."""
         if len(self.counts) == 1:
             return
         self.steps, self.seconds = self.steps + steps, self.seconds + seconds

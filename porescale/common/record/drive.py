@@ -245,17 +245,14 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch, threads: T
                 f"interrupted at step {model.step} (t = {model.time:.6g} s); state saved in "
                 f"{record.folder / CHECKPOINT}, resume to continue"
             )
-        start, busy, before, compiled = clock.perf_counter(), clock.process_time(), model.step, TURNS.seconds
+        busy, before, compiled = clock.process_time(), model.step, TURNS.seconds
         last = None if run.step_seconds is None else run.last_step
-        model.advance(block(model, last, run.schedules.values(), rate))
+        wall = threads.advance(model, block(model, last, run.schedules.values(), rate))
         assert model.step > before, "advance() must count its steps"
         assert run.step_seconds in (None, model.step_seconds), "a varying step needs variable_step = True"
-        wall = clock.perf_counter() - start
         record.cost.block(model.step - before, clock.process_time() - busy)
         rate = (model.step - before) / max(wall, 1e-9)
         spent.block(model.step - before, wall)
-        if TURNS.seconds == compiled:
-            threads.spent(model.step - before, wall)
         spent.compiling += TURNS.seconds - compiled
         watch.update(model.step, model.time)
         _after_block(run, record)

@@ -262,11 +262,7 @@ def pace_of(model: Any) -> tuple[float, float]:
     with Threads() as threads:
         count = 1
         while not threads.settled:
-            before = time.perf_counter()
-            model.advance(count)
-            took = time.perf_counter() - before
-            threads.spent(count, took)
-            count = _block(took / count)
+            count = _block(threads.advance(model, count) / count)
         first, before, busy = model.step, time.perf_counter(), time.process_time()
         blocks, spent = 0, 0.0
         while blocks < LEAST or spent < SECONDS:

@@ -5,7 +5,9 @@ from collections.abc import Callable
 import pytest
 
 from porescale.common.compiled import jit
+from porescale.common.compiled.turns import TURNS
 from porescale.common.duration.threads import LATE, SOON, WINDOW, Threads
+from tests.reference.toy_model import Toy
 
 STEP = 0.001
 """Seconds of a step with one thread."""
@@ -74,6 +76,24 @@ def test_a_machine_that_gets_busy_and_quiet_again_is_followed():
 def test_a_machine_that_only_gets_quieter_changes_nothing():
     machine = Machine(2, lambda _, now: 1.0 + 0.05 * now).run(60.0)
     assert machine.threads.count == 2
+
+
+def test_steps_that_compile_are_not_counted(monkeypatch):
+    told, threads = [], Threads(2)
+    monkeypatch.setattr(threads, "spent", lambda steps, seconds: told.append((steps, seconds)))
+    model = Toy()
+    compiling = model.advance
+
+    def compiled(steps: int) -> None:
+        compiling(steps)
+        TURNS.seconds += 1.0
+
+    monkeypatch.setattr(TURNS, "seconds", TURNS.seconds)
+    assert threads.advance(model, 3) > 0.0
+    monkeypatch.setattr(model, "advance", compiled)
+    threads.advance(model, 5)
+    assert [steps for steps, _ in told] == [3]
+    assert model.step == 8
 
 
 def test_afterwards_kernels_have_what_they_had():
