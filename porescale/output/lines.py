@@ -21,6 +21,7 @@ COLUMNS = (
     "solid fraction ()",
 )  # fmt: skip
 LAMBDA = "hydraulic radius ratio ()"
+"""Column of lambda."""
 
 
 def write_lines(run: Run, folder: Path) -> list[Path]:

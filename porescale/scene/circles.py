@@ -8,13 +8,12 @@ from typing import Any, ClassVar, Literal
 import pydantic
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import STILLS
 from porescale.common.schema.sections import Refused, Section, quantity, validate
 from porescale.scene.ranges import PLACE
 
 PRESSED = 0.02
 """Overlap over diameter with which circles of a file may start: what presses a packing together, or measures it."""
-STILLS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm", ".webp")
-"""Endings of files that are pictures."""
 LEAST_PIXELS = 8
 """Across the smallest disc that is looked for in a picture."""
 

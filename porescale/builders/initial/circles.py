@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.given_file import LARGEST, reason, require_finite
+from porescale.common.core.given_file import LARGEST, STILLS, reason, require_finite
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import part
 from porescale.dem.prepare.compaction import read_circles, read_packing
-from porescale.scene.circles import STILLS, Circles
+from porescale.scene.circles import Circles
 
 
 def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | str]]:

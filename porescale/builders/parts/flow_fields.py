@@ -11,14 +11,12 @@ from porescale.lbm.fields import stream_function
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 from porescale.lbm.totals import Totals
+from porescale.output.lines import LAMBDA
 from porescale.scene.grains import Grains
-
-LAMBDA = "hydraulic radius ratio ()"
-"""Column of lambda: every record of grains in fluid carries it."""
 
 
 def ratio_column(grains: Grains | None) -> dict[str, float]:
-    """That column, of a scene whose grains have a hydraulic radius ratio; else none.
+    """The column of lambda, which every record of grains in fluid carries; none where grains have no such ratio.
 
     hydraulic radius ratio () : radius that the fluid sees, over that of the grain
     """

@@ -14,9 +14,8 @@ from cyclopts import App, CycloptsError, Parameter, Token, convert
 
 from porescale.common.cli import bench, cases, check, completion, measure, new, run, schema, show, study, sweep, verify
 from porescale.common.cli.diagnostics import printed
-from porescale.common.cli.entry import INTERRUPTED
 from porescale.common.cli.package import Package
-from porescale.common.core.errors import InputError, PorescaleError
+from porescale.common.core.errors import INTERRUPTED, InputError, PorescaleError
 from porescale.common.core.version import VERSION
 from porescale.common.page import command as report
 from porescale.common.watch import command as watch

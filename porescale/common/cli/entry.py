@@ -18,8 +18,8 @@ from importlib import import_module
 from types import FrameType
 from typing import Any
 
-INTERRUPTED = 130
-"""Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
+from porescale.common.core.errors import INTERRUPTED
+
 AGAIN = 0.25
 """Seconds after which a Ctrl-C that was lost is raised once more; a command that has caught it ends sooner."""
 

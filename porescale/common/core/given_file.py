@@ -9,6 +9,8 @@ from pathlib import Path
 
 from porescale.common.core.errors import Fault, InputError
 
+STILLS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm", ".webp")
+"""Endings of files that are pictures."""
 LARGEST = 256 * 2**20
 """Bytes of a file that is read whole: a list of a million circles has a tenth of it."""
 

@@ -13,14 +13,14 @@ from pathlib import Path
 from typing import Any
 
 from porescale.common.core.atomic import owned
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import INTERRUPTED, Fault, InputError
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
 from porescale.common.studies.parameter_table import Point
 from porescale.common.studies.schedulers import progress
 from porescale.common.studies.schedulers.law import Scheduler
 from porescale.common.studies.schedulers.local import Local
-from porescale.common.studies.schedulers.task import INTERRUPTED, Done, Task
+from porescale.common.studies.schedulers.task import Done, Task
 
 FINISHED, UNSTABLE, REFUSED = "finished", "unstable", "refused"
 CODES = {0: FINISHED, 2: REFUSED, 3: UNSTABLE, INTERRUPTED: "interrupted"}

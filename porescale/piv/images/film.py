@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError, warn
-from porescale.common.core.given_file import given_bytes, require_finite
+from porescale.common.core.given_file import STILLS, given_bytes, require_finite
 from porescale.common.core.ranges import Range
 from porescale.piv import given
 from porescale.piv.images import stacks
@@ -23,7 +23,6 @@ from porescale.piv.images.rendered import measured_with
 Picture = NDArray[Any]
 Box = tuple[int, int, int, int]
 
-STILLS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm", ".webp")
 LEAST = {"start": 0, "step": 1, "end": 1}
 """Least numbers of frames that choose among those of a film."""
 

@@ -5,10 +5,11 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from queue import SimpleQueue
 from typing import Any
 
+from porescale.common.core.errors import INTERRUPTED
 from porescale.common.studies.schedulers.cores import taken
 from porescale.common.studies.schedulers.law import Entry
 from porescale.common.studies.schedulers.progress import Progress
-from porescale.common.studies.schedulers.task import INTERRUPTED, Done, Process, Task
+from porescale.common.studies.schedulers.task import Done, Process, Task
 
 
 class Local:

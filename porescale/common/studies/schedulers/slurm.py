@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from porescale.common.core.errors import Fault, InputError, PorescaleError
+from porescale.common.core.errors import INTERRUPTED, Fault, InputError, PorescaleError
 from porescale.common.core.extras import installed
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
@@ -19,7 +19,7 @@ from porescale.common.studies.schedulers.law import OPTION, Entry
 from porescale.common.studies.schedulers.progress import Progress
 from porescale.common.studies.schedulers.slurm_options import parameters
 from porescale.common.studies.schedulers.slurm_queue import Queue, last_line
-from porescale.common.studies.schedulers.task import INTERRUPTED, Done, Task
+from porescale.common.studies.schedulers.task import Done, Task
 
 FIRST_LOOK, LAST_LOOK, SLOWER = 1.0, 30.0, 1.1
 """Seconds between looks at the queue: at first, in the end, and how much longer each is than the one before."""

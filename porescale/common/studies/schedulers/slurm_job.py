@@ -6,10 +6,10 @@ import time
 from pathlib import Path
 from typing import Any
 
-from porescale.common.core.errors import InputError, PorescaleError
+from porescale.common.core.errors import INTERRUPTED, InputError, PorescaleError
 from porescale.common.record.check_state import CHECKPOINT
 from porescale.common.record.resume import how_far
-from porescale.common.studies.schedulers.task import INTERRUPTED, Process, Task
+from porescale.common.studies.schedulers.task import Process, Task
 
 WARNING_SECONDS = 120
 """How long before the end of its time a job is told, so that its run saves its state."""

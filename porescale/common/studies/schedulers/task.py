@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from porescale.common.core.atomic import owned
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import INTERRUPTED, InputError
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
 from porescale.common.studies.schedulers.cores import pin
@@ -20,7 +20,6 @@ OWN_GROUP = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
 STOP: int = getattr(signal, "CTRL_BREAK_EVENT", signal.SIGTERM)
 """What asks a process to save its state and end; Windows sends such things to groups of processes alone.  Not SIGINT,
 which shells have ignored in the background: a run that has not begun its steps would go on to its end."""
-INTERRUPTED = 130
 LOOK = 0.5
 """Seconds between looks at a run folder that another run holds."""
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from porescale.common.core.atomic import owned
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import INTERRUPTED, InputError
 from porescale.common.studies.schedulers import slurm as slurm_scheduler
 from porescale.common.studies.schedulers import task as task_module
 from porescale.common.studies.schedulers.dask import Dask, takes
@@ -21,7 +21,7 @@ from porescale.common.studies.schedulers.law import Scheduler, scheduler_of
 from porescale.common.studies.schedulers.local import Local
 from porescale.common.studies.schedulers.progress import of
 from porescale.common.studies.schedulers.slurm_options import parameters
-from porescale.common.studies.schedulers.task import INTERRUPTED, Process, Task
+from porescale.common.studies.schedulers.task import Process, Task
 from tests.reference.faults.slurm import slurm
 from tests.reference.same_run import differences
 from tests.reference.toy_command import SCENE, begun, call, run_alone
