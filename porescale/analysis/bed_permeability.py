@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from porescale.analysis.permeability import Measured, gebart, kozeny_carman, measure
+from porescale.analysis.permeability import Measured, gebart, kozeny_carman, measure, with_images
 from porescale.builders.derive import fluid_scales
 from porescale.builders.initial.fluid_options import collision_options, solid_options
 from porescale.builders.scene import Scene
@@ -73,13 +73,12 @@ def measure_window(scene: Scene, grains: Cloud, *, resolved: bool = False) -> Me
         "relaxation_time": scales.relaxation_time, "laws": collision_options(scene.fluid),
         "solid_laws": solid_options(scene.fluid),
     }  # fmt: skip
+    whole = periodic_x and window.width > box[0] - near, periodic_y and window.height > box[1] - near
+    period = [length if scene.domain.periodic[k] and not whole[k] else 0.0 for k, length in enumerate(box)]
+    position, radius = with_images(grains.position, grains.data["hydraulic_radius"], period)
     return measure(
-        grains.position, grains.data["hydraulic_radius"], lower, upper, spacing,
-        direction=scene.permeability.direction, periodic=(
-            periodic_x and window.width > scene.domain.width - near,
-            periodic_y and window.height > scene.domain.height - near,
-        ),
-        walls=walls, **as_run,
+        position, radius, lower, upper, spacing, direction=scene.permeability.direction, periodic=whole, walls=walls,
+        **as_run,
     )  # fmt: skip
 
 

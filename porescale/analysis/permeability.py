@@ -16,14 +16,15 @@ K is there with half the cells (docs/theory/hydraulic_radius.md).
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.types import Reals
+from porescale.common.core.types import Floats, Reals
 from porescale.coupling.limits import FOR_NARROW_GAPS, RECOMMENDED
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import solid_operator
@@ -99,6 +100,33 @@ def ratio_for(relative: float, solid_fraction: float) -> float | None:
     return 0.5 * (low + high)
 
 
+def standing(at: Floats, radius: Floats, extent: Sequence[float], whole: Sequence[bool]) -> NDArray[np.bool_]:
+    """Which discs (n,) stand in a window: those with their centre between its faces that reach in between its flanks.
+
+    at : centres (n, 2) from its lower corner, the direction of the flow first;  extent : its lengths in the same unit
+    and order;  whole : along which of them it is a whole period, where all discs stand in it.
+    """
+    inside = np.ones(len(at), bool)
+    for axis, length in enumerate(extent):
+        reach = 0.0 if axis == 0 else radius
+        if not whole[axis]:
+            inside &= (at[:, axis] > -reach) & (at[:, axis] < length + reach)
+    return inside
+
+
+def with_images(position: Reals, radius: Reals, period: Sequence[float]) -> tuple[Floats, Floats]:
+    """Discs and their images one ``period`` to either side: centres (m, 2) and radii (m,), the discs first.
+
+    period : of a box, along x and y, in the unit of ``position`` (n, 2); 0 where no image is wanted.
+    """
+    at, size = np.asarray(position, float), np.asarray(radius, float)
+    for axis, length in enumerate(period):
+        if length:
+            shift = length * np.eye(2)[axis]
+            at, size = np.concatenate([at, at - shift, at + shift]), np.tile(size, 3)
+    return at, size
+
+
 def measure(
     position: Reals,
     radius: Reals,
@@ -131,11 +159,7 @@ def measure(
     size = (np.asarray(radius, float)) / spacing
     whole = [periodic[k] for k in order]
     cells = [round((upper[k] - lower[k]) / spacing - 1e-6) for k in order]
-    inside = np.ones(len(at), bool)
-    for axis, length in enumerate(cells):
-        reach = 0.0 if axis == 0 else size  # flanks cut discs; faces take those whose centre is inside
-        if not whole[axis]:
-            inside &= (at[:, axis] > -reach) & (at[:, axis] < length + reach)
+    inside = standing(at, size, cells, whole)
     at, size = at[inside], size[inside]
     if len(at) == 0:
         raise InputError(Fault("permeability.window", None, "holds no grain", repair="move it into the bed"))

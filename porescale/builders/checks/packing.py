@@ -3,7 +3,7 @@ to act on."""
 
 import numpy as np
 
-from porescale.analysis.permeability import SHORTEST
+from porescale.analysis.permeability import SHORTEST, standing, with_images
 from porescale.builders.initial.contact_laws import law_class, merged
 from porescale.builders.initial.packing import drawn_radii, radii_of
 from porescale.builders.initial.placed import placed
@@ -103,8 +103,10 @@ def beside_the_bed(scene: Scene) -> list[str]:
     _, x, r = placed(scene)
     low = np.array((window.left, window.bottom))
     size = np.array((window.width, window.height))
-    inside = np.all((x > low) & (x < low + size), axis=1)
-    diameters = 2.0 * r[inside]
+    box, order = (scene.domain.width, scene.domain.height), [0, 1] if scene.permeability.direction == "x" else [1, 0]
+    whole = [scene.domain.periodic[k] and size[k] >= box[k] * (1.0 - SAME) for k in range(2)]
+    x, r = with_images(x, r, [box[k] if scene.domain.periodic[k] and not whole[k] else 0.0 for k in range(2)])
+    diameters = 2.0 * r[standing((x - low)[:, order], r, size[order].tolist(), [whole[k] for k in order])]
     if packing is not None:
         corner, wide = np.array((packing.left, packing.bottom)), np.array((packing.width, packing.height))
         if np.all((corner < low + size) & (low < corner + wide)):
@@ -114,11 +116,9 @@ def beside_the_bed(scene: Scene) -> list[str]:
             "permeability.window: no grain stands in it at the start: unless some come there, permeability.csv stays "
             "empty; move it into the bed"
         ]
-    axis = 0 if scene.permeability.direction == "x" else 1
-    whole = scene.domain.periodic[axis] and size[axis] >= (scene.domain.width, scene.domain.height)[axis] * (1.0 - SAME)
     ratio = scene.grains.hydraulic_radius_ratio or 1.0 if scene.grains else 1.0
-    across = float(size[axis]) / (ratio * float(diameters.mean()))
-    if whole or across >= SHORTEST:
+    across = float(size[order[0]]) / (ratio * float(diameters.mean()))
+    if whole[order[0]] or across >= SHORTEST:
         return []
     return [
         f"permeability.window: it is {across:.2g} hydraulic diameters long along the flow, and nothing is measured in "
