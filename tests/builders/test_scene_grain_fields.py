@@ -60,6 +60,24 @@ def test_forces_on_walls_and_held_discs():
     assert row["disc 0 force y (N/m)"] == pytest.approx(FORCE, rel=1e-9)
 
 
+def test_a_held_disc_is_solid_but_has_no_mass():
+    # All that moves is one grain: with a mass of the disc its 0.1 m/s would be a mean of two, and deviate from it.
+    whole = {"name": "box", "lower": [0.0, 0.0], "upper": [0.012, 0.008]}
+    moving = {**grain(0.003, 0.004), "velocity": [0.1, 0.0]}
+    scene = dry(grains={"density": 2500, "grain": [moving]}, disc=[grain(0.008, 0.004, 0.002)], region=[whole],
+                coarse_graining={"spacing": 0.0005, "fields": ["density", "solid_fraction"]})  # fmt: skip
+    system = build(scene)
+    row, fields = system.tables()["regions"], system.snapshot().grids["grain_fields"]
+    assert row["box velocity x (m/s)"] == pytest.approx(0.1, rel=1e-12)
+    assert row["box kinetic stress xx (Pa)"] == pytest.approx(0.0, abs=1e-12)
+    area = math.pi * 0.0005**2
+    assert row["box porosity ()"] == pytest.approx(1 - 5 * area / (0.012 * 0.008), rel=1e-12)
+    # Single precision, some hundred cells.
+    cell = math.prod(fields.spacing)
+    assert float(fields.cells["density"].sum(dtype=float)) * cell == pytest.approx(2500 * area, rel=1e-6)
+    assert float(fields.cells["solid_fraction"].sum(dtype=float)) * cell == pytest.approx(5 * area, rel=1e-6)
+
+
 def test_tables_of_grains_in_fluid_carry_the_hydraulic_radius_ratio():
     control = [{"grain": 0, "x": {"velocity": 0.001}, "record": True}]
     for made, known in ((column, True), (dry, False)):

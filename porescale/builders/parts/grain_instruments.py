@@ -5,6 +5,7 @@ contact step would use, and changes nothing.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.common.record.part import Part
 from porescale.common.schema.names import names_of
 from porescale.dem.bodies.rigid import areas, as_bodies, body_of
+from porescale.dem.discs import Discs
 from porescale.dem.forces.rectangle import BOTTOM, RIGHT, TOP
 from porescale.dem.forces.rectangle import LEFT as LEFT_FACE
 from porescale.dem.forces.walls import HIGH, LOW, SIDES, X
@@ -141,7 +143,8 @@ class GrainInstruments(Part):
         cell = grains.cell if isinstance(grains.cell, Straining) else None
         periodic = grains.box.periodic if cell is None else (False, False)
         raster = Raster.over(grains.box.lower, grains.box.upper, section.spacing, width, periodic)
-        fields = CoarseGrained(raster, grains.discs, found, conserve=cell is None, cell=cell, area=areas(grains))
+        discs = _without_mass(grains.discs, self.held)
+        fields = CoarseGrained(raster, discs, found, conserve=cell is None, cell=cell, area=areas(grains))
         cells: dict[str, AnyArray] = {}
         units: dict[str, str] = {}
         for name in section.fields:
@@ -192,6 +195,11 @@ def contact_cloud(found: Contacts, grains: Grains) -> Cloud:
     return Cloud(point, data, units)
 
 
+def _without_mass(discs: Discs, held: AnyArray) -> Discs:
+    """The discs with no mass where they are held: what is held is solid, and has no mass of its own."""
+    return replace(discs, mass=np.where(held, 0.0, discs.mass))
+
+
 def _moving(grains: Grains, region: Region, weight: AnyArray) -> Motion:
     """The affine motion of the discs of a region, (n,) weights, in a strained cell too."""
     at, velocity = region.about(grains.discs.position, grains.period), grains.discs.velocity
@@ -207,7 +215,7 @@ def region_row(
 
     A region stays where it is, also in a strained cell, whose images are measured wherever they reach into it.
     Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it; polygons
-    (``placed``) take their exact area, and move with their corners;
+    (``placed``) take their exact area, and move with their corners; held ones have no mass;
     coordination and rattlers are of discs and clumps whose centre is inside, held ones left out; fabric and forces of
     contacts whose point is inside.
 
@@ -239,7 +247,7 @@ def region_row(
     rotation (rad/s) : of the best affine motion, anticlockwise
     """
     d, period = grains.discs, grains.period
-    bodies, number = as_bodies(grains), body_of(grains)
+    bodies, number = _without_mass(as_bodies(grains), held), body_of(grains)
     others = held | (number != np.arange(d.count))
     discs = disc_count(grains)
     share = disc_areas(region, d.position, d.radius, period) / np.where(d.area > 0.0, d.area, 1.0)
@@ -251,7 +259,7 @@ def region_row(
     inside = region.holds(bodies.position, period) & ~others
     here = found.chosen(region.holds(found.point, period) & loads(found))
     fabric, force = fabric_of(found, region, period), here.normal_force
-    moving = _moving(grains, region, d.mass * share)
+    moving = _moving(grains, region, bodies.mass * share)
     neighbours = coordination_of(found.of_bodies(number), region, bodies.position, period, loose, others)
     nan = float("nan")
     return {

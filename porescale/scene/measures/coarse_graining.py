@@ -14,7 +14,8 @@ GrainField = Literal["density", "solid_fraction", "velocity", "strain_rate", "st
 class CoarseGraining(Section):
     """Fields of the grains in snapshots, in grain_fields.vtkhdf: every grain and contact spread by a smooth kernel.
 
-    Compression is positive.  Mass is kept: what the kernel would put behind a wall lies before it.
+    Compression is positive.  Mass is kept: what the kernel would put behind a wall lies before it.  Held bodies are
+    solid, but have no mass: density, velocity, strain rate and kinetic stress are of the grains alone.
     """
 
     spacing: float = quantity("m", **LENGTH, help="distance between the points at which fields are taken, about")
