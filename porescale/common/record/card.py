@@ -28,12 +28,14 @@ FREE = (
     "snapshot_interval",
     "series_interval",
     "checkpoint_seconds",
-    "output",
+    "output.forces",
+    "output.report",
     "title",
     "look",
     "run",
 )
-"""Scene keys, dotted or by their last name, and sections that may change when a run is resumed: no physics."""
+"""Scene keys, dotted or by their last name, and sections that may change when a run is resumed: no physics, and nothing
+of the state, of the columns of series.csv, and of what each snapshot holds, which are the same from first to last."""
 
 DECIDING = ("numpy", "numba", "llvmlite")
 """Packages whose version may change the bits of a run."""

@@ -132,16 +132,18 @@ def test_changed_keys_are_named_and_free_ones_are_not():
     old = {
         "fluid": {"viscosity": 1.0, "density": 2.0},
         "run": {"duration": 1.0},
-        "output": {"x": 1},
+        "output": {"series_interval": 1.0, "forces": False, "energy": False, "contacts": False, "fields": []},
         "time": {"end": 1.0, "step": 1},
     }
     new = {
         "fluid": {"viscosity": 1.5, "density": 2.0, "model": "trt"},
         "run": {"duration": 2.0},
-        "output": {},
+        "output": {"series_interval": 2.0, "forces": True, "energy": True, "contacts": True, "fields": ["vorticity"]},
         "time": {"end": 2.0, "step": 2},
     }
-    expected = {"fluid.viscosity": (1.0, 1.5), "fluid.model": (None, "trt"), "time.step": (1, 2)}
+    # What snapshots and rows hold: those of before lacked it, were left out, or made the folder unreadable.
+    held = {f"output.{key}": (False, True) for key in ("energy", "contacts")} | {"output.fields": ([], ["vorticity"])}
+    expected = {"fluid.viscosity": (1.0, 1.5), "fluid.model": (None, "trt"), **held, "time.step": (1, 2)}
     assert card.changed_keys(old, new) == expected
     assert "run.duration" in card.changed_keys(old, new, free=())
 
