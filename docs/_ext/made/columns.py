@@ -64,7 +64,7 @@ ABOUT = {
     "lines.csv": "of each `[[line]]`: a row for each point of each snapshot",
     "profile.csv": "a row for each snapshot",
     "breaks.csv": "a row for each bond that broke, by time",
-    "packing.csv": "the grains as they were placed, a row each; another scene can read it",
+    "packing.csv": "grains and held discs of the last snapshot, a row each; another scene can read it",
     "levels.csv": "one set for each `[[level]]`, with the rows of series.csv",
     "phreatic.csv": "of soil with water, with the rows of series.csv",
 }
