@@ -102,6 +102,17 @@ def test_a_prescribed_clump_or_polygon_does_not_fall():
     assert fall(every, 1.0, placed_frames(every)) == (0.0, False)
 
 
+def test_a_held_body_that_its_control_leaves_free_is_as_one_that_is_not_held():
+    # A rod 6 mm up was not reckoned with: it went half of its thickness in a step, and the run stopped.
+    rod = {"chain": [[0.002, 0.006], [0.004, 0.006]], "thickness": 1e-4}
+    grains, pushed = {"density": 2500}, [{"segment": 0, "x": {"force": 1e-3}}]
+    held, loose = (dry(grains=grains, segment=[rod | more], control=pushed) for more in ({"held": True}, {}))
+    assert fall(held, 1.0, placed_frames(held)) == fall(loose, 1.0, placed_frames(loose)) == (0.006, False)
+    assert derive(held).contact_step == derive(loose).contact_step
+    still = dry(grains=grains, segment=[rod | {"held": True}], control=[{"segment": 0, **STILL}])
+    assert fall(still, 1.0, placed_frames(still)) == (0.0, False)  # the check that must fail
+
+
 def test_grains_placed_by_hand_are_numbered_after_those_of_the_packing():
     scene = column(grains__grain=[grain(0.003, 0.002)], control=[{"grain": 31, **STILL}])
     assert build(scene).grains.discs.position[31] == pytest.approx([0.003, 0.002], abs=1e-15)

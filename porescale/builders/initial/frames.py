@@ -4,6 +4,7 @@ Order of the discs of a system: packing, grains and clumps placed by hand, discs
 frames.  Order of its clumps: clumps, then frames: segments, polygons, containers, rock, plates.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -72,6 +73,18 @@ def placed_frames(scene: Scene) -> list[Placed]:
             faults += [_of_section(fault, key) for fault in error.faults]
     if faults:
         raise InputError(faults)
+    return _controlled(scene, found)
+
+
+def _controlled(scene: Scene, placed: Sequence[Placed]) -> list[Placed]:
+    """The bodies, held ones moved as their [[control]] says: where it leaves a component free, forces move it."""
+    given, numbers, found = {it.of: it for it in scene.control}, Counter[str](), []
+    for it in placed:
+        by = given.get((it.kind, numbers[it.kind]))
+        numbers[it.kind] += 1
+        if by is not None and it.prescribed == HELD:
+            it = replace(it, prescribed=(control_of(by.x), control_of(by.y), control_of(by.rotation)))
+        found.append(it)
     return found
 
 
