@@ -26,9 +26,9 @@ PARABOLA_PEAK = 1.5
 class Side(Section):
     """One side, as ``top = "slip"`` or ``left = { kind = "velocity", velocity = ["1 cm/s", 0] }``.
 
-    "wall" holds the fluid, and may slide along itself with ``speed``;  "slip" lets it slide (a flat water surface);
-    "periodic" joins opposite sides;  "velocity" lets it in or out with a mean ``velocity``, uniform or as the parabola
-    between two walls, or as the function (s, t) of a user's file, "laws.py:NAME";
+    "wall" holds the fluid, and may slide along itself with ``speed``, for the fluid alone;  "slip" lets it slide (a
+    flat water surface);  "periodic" joins opposite sides;  "velocity" lets it in or out with a mean ``velocity``,
+    uniform or as the parabola between two walls, or as the function (s, t) of a user's file, "laws.py:NAME";
     "pressure" holds the reduced ``pressure`` (what is above hydrostatic) and lets it in or out.
     A "wall" of a dry scene may also move, with ``velocity``, or so that the grains press on it with a ``stress`` or
     ``force``, > 0 for compression, no faster than ``fastest``.

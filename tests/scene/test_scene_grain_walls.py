@@ -11,7 +11,7 @@ from porescale.builders.build import build
 from porescale.builders.report import report
 from porescale.common.core.constants import GRAVITY
 from porescale.common.schema.sections import scene_as_dict, validate
-from tests.reference.scenes import grain
+from tests.reference.scenes import column, grain, warned
 from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
 
 ROWS = [grain(0.0005 + 0.001 * i, 0.0005 + 0.001 * j) for i in range(4) for j in range(2)]
@@ -123,3 +123,13 @@ def test_walls_that_move_are_not_for_wet_scenes():
     said = lines(fluid={"viscosity": 2e-5, "spacing": 0.0002, "step": 4e-5}, grains__hydraulic_radius_ratio=1.0,
                  domain__top=LID, wall=[{"x": 0, "y": 0, "normal": [0, 1]}])  # fmt: skip
     assert [line.partition(";")[0] for line in said] == ["domain.top: is for dry grains", "wall[0]: is for dry grains"]
+
+
+def test_a_side_that_slides_for_the_fluid_is_said_to_stand_for_grains():
+    # Grains lay still on it, dry, and were held back by it under water, without a word.
+    belt = {"kind": "wall", "speed": 0.1}
+    (line,) = lines(domain__bottom=belt)
+    assert line.startswith("domain.bottom.speed = 0.1 m/s: is felt by a fluid alone, and there is none; write velocity")
+    said = "domain.bottom is felt by the fluid alone: grains do not feel it move"
+    assert warned(column(domain__bottom=belt, fluid__step=1e-5), said)
+    assert not warned(column(), said)  # the check that must fail

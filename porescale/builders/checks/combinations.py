@@ -100,6 +100,11 @@ def check_walls(scene: Scene) -> list[Fault]:
         problem = "is for dry grains"
         repair = "leave [fluid] or it out" if scene.fluid else "add [grains] or leave it out"
         faults += [Fault(key, None, problem, repair=repair) for key in moving]
+    for name, side in scene.domain.sides.items():
+        if side.speed and not scene.fluid:
+            along = f"[{side.speed:g}, 0]" if name in ("bottom", "top") else f"[0, {side.speed:g}]"
+            problem, repair = "is felt by a fluid alone, and there is none", f"write velocity = {along}, for grains"
+            faults.append(Fault(f"domain.{name}.speed", side.speed, problem, "m/s", repair=repair))
     names = names_of(scene.wall, "wall")
     faults += [
         Fault(f"wall[{k}].name", name, "is taken", repair="give each its own")

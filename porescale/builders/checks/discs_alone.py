@@ -49,6 +49,9 @@ def left_out(scene: Scene) -> list[str]:
             f"grains.hydraulic_radius_ratio = {ratio:g} is of the discs alone: the fluid sees polygons at their"
             " outline; polygon.thickness keeps a gap between them open"
         )
+    sliding = [f"domain.{name}" for name, side in scene.domain.sides.items() if side.speed]
+    if scene.contact and sliding:
+        found.append(f"the speed of {', '.join(sliding)} is felt by the fluid alone: grains do not feel it move")
     ended = [name for name, it in (("[[rectangle]]", scene.rectangle), ("[gate]", scene.gate)) if it]
     if scene.lubrication and ended:
         found.append(
