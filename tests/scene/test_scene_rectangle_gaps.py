@@ -97,3 +97,16 @@ def test_a_run_warns_of_its_density(tmp_path, monkeypatch, recwarn):
     output = {"output__report": False, "time__end": 0.001}
     ps.run(channel({**PISTON, "lower": [-0.01, 0.0]}, **output), tmp_path / "run", progress=False)
     assert [str(it.message) for it in recwarn if "of that at rest" in str(it.message)]
+
+
+def test_a_piston_before_a_shut_gate_is_warned_of():
+    # 1.2 mm of a box of 12 mm: a tenth of all fluid, taken out beyond the gate as before it.
+    box: dict[str, Any] = {"domain__right": "wall", "fluid__step": 1e-5}
+    piston = PISTON | {"lower": [-0.004, 0.0]}
+    (line,) = warned(channel(piston, **box, gate={"x": 0.008, "opens_at": 0.1}), "while the gate is shut")
+    assert line.startswith("rectangle 0 comes in while")
+    assert "beyond the gate falls by 0.1;" in line
+    # The check that must fail: open from the start on, or with its mass left as it is.
+    assert not warned(channel(piston, **box, gate={"x": 0.008, "opens_at": 0}), "while the gate is shut")
+    left = channel(piston | {"make_good": False}, **box, gate={"x": 0.008, "opens_at": 0.1})
+    assert not warned(left, "while the gate is shut")

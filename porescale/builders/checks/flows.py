@@ -196,6 +196,7 @@ def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault],
         else:
             warnings.append(f"{what} lets it {way}: the density changes by as much; {repair}")
     _check_gaps(scene, scales, faults, warnings)
+    _check_shut(scene, warnings)
     _check_tilt(scene, scales, warnings)
     _check_unheld(scene, scales, warnings)
     if not solids and scales.relaxation_time > LONGEST_ALONE:
@@ -255,6 +256,36 @@ def _gap_behind(scene: Scene, it: Rectangle, axis: int) -> tuple[float, float]:
         return 0.0, 0.0
     gone = abs(it.travelled(scene.time.end)[axis])
     return max(first, 0.0), min(max(first + gone, 0.0), size[axis])
+
+
+def _check_shut(scene: Scene, warnings: list[str]) -> None:
+    """Warn of rectangles that come into a closed box, or leave it, while its gate is shut: what fluid they let in is
+    taken out again from all of the box, beyond the gate, too."""
+    d = scene.domain
+    if scene.gate is None or any(side.open for side in d.sides.values()):
+        return
+    until = min(scene.gate.opens_at, scene.time.end)
+    for k, it in enumerate(scene.rectangle):
+        if it.make_good is False:
+            continue
+        before, after = (_area_inside(it, time, (d.width, d.height)) for time in (0.0, until))
+        share = (after - before) / (d.width * d.height)
+        if abs(share) > FILLED_WARN:
+            way = ("comes in", "falls") if share > 0.0 else ("leaves", "rises")
+            warnings.append(
+                f"rectangle {k} {way[0]} while the gate is shut: the mass of the fluid is restored in all of the box,"
+                f" so that the density beyond the gate {way[1]} by {abs(share):.2g}; let it move when the gate is open"
+            )
+
+
+def _area_inside(it: Rectangle, time: float, size: tuple[float, float]) -> float:
+    """Area (m²) of a rectangle that is in the box of that size (m) at ``time`` (s)."""
+    gone = it.travelled(time)
+    ends = [
+        (max(low + way, 0.0), min(high + way, length))
+        for low, high, way, length in zip(it.lower, it.upper, gone, size, strict=True)
+    ]
+    return math.prod(max(0.0, high - low) for low, high in ends)
 
 
 def _check_tilt(scene: Scene, scales: Scales, warnings: list[str]) -> None:
