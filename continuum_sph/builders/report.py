@@ -13,5 +13,12 @@ def report(scene: Scene) -> Report:
     if scene.soil is None:
         return water_report(scene)
     if scene.soil.suction is not None:
-        return suction_report(scene)
-    return soil_report(scene) if scene.dry else seepage_report(scene)
+        out = suction_report(scene)
+    else:
+        out = soil_report(scene) if scene.dry else seepage_report(scene)
+    settle = 0.0 if scene.soil.held else scene.soil.numerics.settle
+    if settle >= scene.time.end:
+        out.warn(
+            f"soil.numerics.settle = {settle:g} s: motion is braked to the end of the run, at {scene.time.end:g} s"
+        )
+    return out

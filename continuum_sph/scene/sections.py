@@ -130,8 +130,14 @@ class Scene(SceneBase):
             faults += self.pile.faults(*self.inner, spacing)
             if self.soil is None:
                 faults.append(Fault("pile", "given", "needs soil beside it", repair="add [soil]"))
-        if self.output.energy and not self.has_water:
-            faults.append(Fault("output.energy", True, "is of water, of which there is none", repair="leave it out"))
+        if not self.has_water and (self.soil is None or self.soil.suction is None):  # which refuses them itself
+            asked = {"output.energy": self.output.energy, "probe": bool(self.probe), "level": bool(self.level)}
+            problem, repair = "is of water, of which there is none", "leave it out"
+            faults += [
+                Fault(key, True if key == "output.energy" else "given", problem, repair=repair)
+                for key in asked
+                if asked[key]
+            ]
         if self.reservoir and self.soil is None:
             faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
         if self.air is not None and (self.soil is None or not self.has_water):

@@ -222,6 +222,9 @@ class SoilSection(Section):
         if self.stress == "unconsolidated" and (not self.saturated or self.held):
             repair = 'give soil.saturated = true and soil.held = false, or stress "geostatic"'
             found.append(Fault("soil.stress", self.stress, "is of ground with full pores that may move", repair=repair))
+        if self.rest is not None and self.stress != "geostatic":
+            problem, repair = f'is of stress "geostatic", not "{self.stress}"', "take out one of them"
+            found.append(Fault("soil.rest", self.rest, problem, repair=repair))
         if self.hydraulic_share != 1.0 and self.permeability_law != CONDUCTING:
             repair = f'give soil.permeability_law = "{CONDUCTING}"'
             problem = "is of a law that the scene does not have"

@@ -86,6 +86,17 @@ def require_measurable(scene: Scene) -> None:
         raise InputError(faults)
 
 
+def homogenise_doubts(scene: Scene) -> list[str]:
+    """Why `porescale homogenise` would refuse a scene with [homogenise], which runs without it; one line each."""
+    if not scene.homogenise:
+        return []
+    try:
+        specimen(scene)
+    except InputError as error:
+        return [f"porescale homogenise would refuse the scene: {fault.line()}" for fault in error.faults]
+    return []
+
+
 def stiffness_over_pressure(scene: Scene) -> float:
     """Contact stiffness k (N/m a metre) over the pressure: E follows it, angles do not where it is large."""
     return law_of(scene).stiffness / pressure_of(scene)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from porescale.analysis.homogenise import homogenise_doubts
 from porescale.analysis.permeability import bed_of_spheres, gebart, kozeny_carman, ratio_for
 from porescale.builders.checks.clear_packing import require_bonds, require_clear_packing
 from porescale.builders.checks.device import device_of
@@ -70,7 +71,7 @@ def report(scene: Scene) -> Report:
     if scene.fluid and scene.grains:
         _regime(scene.grains.density, math.hypot(*scene.gravity), derived, out)
     _cost(scene, derived, out)
-    for warning in (*derived.warnings, *of_bonds):
+    for warning in (*derived.warnings, *of_bonds, *homogenise_doubts(scene)):
         out.warn(warning)
     return out
 

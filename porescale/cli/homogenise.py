@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 SPECIMEN, PORES, SPRINGS = "specimen.toml", "permeability.json", "stiffness.json"
 UNTIL = {
     "friction": "critical friction angle", "peak": "peak friction angle", "dilatancy": "peak dilatancy angle",
-    "porosity": "porosity", "stiffness": "stiffness", "permeability": "permeability",
+    "porosity": "porosity", "stiffness": "stiffness", "exponent": "exponent of stiffness",
+    "permeability": "permeability",
 }  # fmt: skip
 """Words of `--until`."""
 MOST = 1000

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from porescale import Scene
+from porescale import Scene, check
 from porescale.analysis.biaxial import WINDOW, numbers, running
 from porescale.analysis.homogenise import WAVES, pressure_of, ramp_of, section_of, specimen, stiffness_over_pressure
 from porescale.common.core.errors import InputError
@@ -167,6 +167,15 @@ def test_the_first_loading_lasts_as_long_as_waves_take(aspect_ratio):
 def test_what_cannot_be_homogenised_is_refused(changes, said):
     with pytest.raises(InputError, match=said):
         specimen(column(**changes))
+
+
+def test_check_says_what_homogenise_would_refuse():
+    pressed, hard = (
+        [it for it in check(dry(homogenise={"pressure": p})).warnings if "homogenise" in it] for p in (100_000, 100)
+    )
+    assert len(pressed) == 1
+    assert "homogenise.pressure" in pressed[0]
+    assert not hard  # a check that must not warn
 
 
 @pytest.mark.parametrize(

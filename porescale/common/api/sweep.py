@@ -18,6 +18,7 @@ from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.extras import extra
 from porescale.common.core.ranges import Range
 from porescale.common.schema import scene_file
+from porescale.common.schema.save import placed
 
 if TYPE_CHECKING:
     import pandas
@@ -60,6 +61,10 @@ def sweep(
         raise InputError(Fault("over", str(over), "is no text", repair='give "section.key", or "section.key=a,b,c"'))
     asked = Repeats(repeat, over, ("repeat", "over", "vary"))
     points, texts = points_of(vary, asked), setting_texts(settings)
+    if isinstance(scene, program.scene()):  # whose files are not looked for where the sweep keeps it
+        kind, beside = type(scene), scene.source.folder or Path()
+        points = [replace(it, settings=tuple(placed(text, kind, beside) for text in it.settings)) for it in points]
+        texts = tuple(placed(text, kind, beside) for text in texts)
     with _as_file(program, scene, quality) as start:
         file, name = check_points(program, start, points, quality, texts)
         if asked:

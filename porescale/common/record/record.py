@@ -34,7 +34,8 @@ MADE_LATER = (
     "grains_solid_fraction.png", "grains_density.png", "grains_velocity.png", "grains_strain_rate_shear.png",
     "grains_stress_mean.png", "grains_stress_shear.png", "grains_kinetic_stress_mean.png", "chains.vtp", "breaks.csv",
     "energy.dat", "f-d_curve.dat", "rock.png", "output.dat", "cont.dat", "cont2.dat", "velocity_y.dat", "emissions.dat",
-    "contacts.png", "numbers.png", "report.html",
+    "contacts.png", "numbers.png", "report.html", "pressure.png", "velocity.png", "porosity.png", "mean_stress.png",
+    "plastic_strain.png",
 )  # fmt: skip
 """What packages make of a finished run: an older run's must not lie beside a new one that makes none."""
 TABLES = "tables"

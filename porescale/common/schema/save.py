@@ -10,9 +10,9 @@ from pydantic import BaseModel
 
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.schema.messages import sections_in
+from porescale.common.schema.messages import dotted, sections_in
 from porescale.common.schema.own import named_from, require_files, seen_from
-from porescale.common.schema.scene_file import SCENE_FILE
+from porescale.common.schema.scene_file import SCENE_FILE, parse_setting, setting_text
 from porescale.common.schema.sections import Section, scene_as_dict, try_scene
 from porescale.common.schema.written import plain
 
@@ -80,6 +80,20 @@ def _moved(table: Mapping[str, Any], section: type[BaseModel], old: Path, new: P
             elif isinstance(given, list):
                 moved[key] = [_moved(it, inner[0], old, new) if isinstance(it, Mapping) else it for it in given]
     return moved
+
+
+def placed(setting: str, section: type[BaseModel], folder: Path) -> str:
+    """``section.key=value`` whose value names a file, relative to ``folder``, with its whole place; others as given."""
+    key, value = parse_setting(setting)
+    for part in (it for it in key[:-1] if isinstance(it, str)):
+        fields = {field.alias or name: field for name, field in section.model_fields.items()}
+        inner = list(sections_in(fields[part].annotation)) if part in fields else []
+        if len(inner) != 1:
+            return setting
+        section = inner[0]
+    if key[-1] not in getattr(section, "files", ()) or not isinstance(value, str):
+        return setting
+    return setting_text(dotted(key), str((folder / value).resolve()))
 
 
 def _is_a_place(annotation: Any) -> bool:

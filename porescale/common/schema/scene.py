@@ -163,8 +163,9 @@ class SceneBase(Section):
         self._written, self._source = plain(table), source
 
     def _without(self, table: Mapping[str, Any], key: Key) -> dict[str, Any]:
-        """``table`` without ``key``; InputError where scenes have no such key."""
+        """``table`` without ``key``; InputError where it has no such key, nor have scenes."""
         known = {dotted(place) for place in every_key(type(self))}
-        if (name := dotted(tuple(part for part in key if isinstance(part, str)))) not in known:
+        name = dotted(tuple(part for part in key if isinstance(part, str)))
+        if name not in known and not scene_file.holds(table, key):  # some keys have no field: a file's name
             raise InputError(Fault(dotted(key), None, "unknown key", repair=nearest(name, known)))
         return scene_file.without(table, key)

@@ -104,6 +104,17 @@ def test_a_scene_as_an_object_gives_the_same_and_goes_on_where_it_was(scene, ran
         porescale.sweep(loaded.with_({"time.end": 0.02}), VARY, tmp_path / "object")
 
 
+def test_files_that_an_object_is_varied_by_lie_beside_its_scene(scene, ran, tmp_path):
+    for name in ("a.csv", "b.csv"):
+        (scene.parent / name).write_text("x,y,diameter\n0.005,0.004,0.001\n")
+    loaded = porescale.load(scene).with_({"grains.grain": None, "grains.circles.file": "a.csv"})
+    vary = {"grains.circles.file": ["a.csv", "b.csv"], "contact.friction": [0.2]}
+    table = porescale.sweep(loaded, vary, tmp_path / "out")
+    assert table["grains.circles.file"].tolist() == [str(scene.parent / name) for name in ("a.csv", "b.csv")]
+    with pytest.raises(InputError, match=r"c\.csv"):
+        porescale.sweep(loaded, vary | {"grains.circles.file": ["c.csv"]}, tmp_path / "none")
+
+
 def test_repeats_give_members_and_what_their_mean_is_worth(scene, ran, tmp_path):
     table = porescale.sweep(scene, None, tmp_path / "out", over="contact.friction=0.2,0.3,0.4")
     assert table["front (m)"].tolist() == pytest.approx([0.4, 0.6, 0.8])

@@ -140,6 +140,7 @@ def test_names_of_files_go_on_meaning_the_same_file(tmp_path: Path, monkeypatch:
     monkeypatch.chdir("/")
     assert scene.with_({"title": "a"}).with_({"title": ""}) == scene
     assert pickle.loads(pickle.dumps(scene)).with_({"title": "a"}).fluid.spacing == 0.25
+    assert scene.with_({"fluid.read": None, "fluid.spacing": 0.5e-1}) == Scene(fluid={"spacing": 0.05})
 
 
 def test_equal_scenes_are_one_key_and_copies_are_equal(tmp_path: Path) -> None:

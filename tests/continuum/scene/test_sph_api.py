@@ -5,8 +5,10 @@ from pathlib import Path
 import pytest
 
 import continuum_sph
+from continuum_sph.program import SEEPAGE, SOIL
 from porescale.common.core.errors import InputError
 from porescale.common.record.model import Model
+from porescale.common.record.record import Record
 
 CASE = Path(__file__).resolve().parents[3] / "cases" / "collapsing_water_column"
 
@@ -24,6 +26,15 @@ def test_the_api_does_what_the_package_says(tmp_path):
     assert simulation.time > 0.0
     with pytest.raises(InputError, match="no run here"):
         open_run(tmp_path)
+
+
+def test_no_picture_of_an_older_run_stays_beside_a_new_one(tmp_path):
+    Record.fresh(tmp_path, {})
+    made = {tmp_path / f"{name}.png" for name in (*SOIL, *SEEPAGE)}
+    for path in (*made, tmp_path / "mine.png"):
+        path.touch()
+    Record.fresh(tmp_path, {}, overwrite=True)
+    assert set(tmp_path.glob("*.png")) == {tmp_path / "mine.png"}
 
 
 def test_every_name_of_the_api_is_there_and_no_other():

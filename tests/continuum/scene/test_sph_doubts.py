@@ -12,6 +12,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.tanks import tank_scene
 from porescale.common.duration.expected import STEPS
 from porescale.common.schema.sections import scene_as_dict, validate
+from tests.reference.scenes import refusals
 
 WIDE = [[0, 0], [1, 0], [1, 0.4], [0, 0.4]]
 SMALL = [[0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]]
@@ -165,6 +166,14 @@ def test_the_energy_balance_of_water_among_grains_is_said_to_be_open():
     assert not any(told in it for it in report(scene()).warnings)
     alone = scene_as_dict(scene(output=output)) | {"soil": None}
     assert not any(told in it for it in report(validate(Scene, alone)).warnings)
+
+
+def test_nothing_is_asked_of_water_that_is_not_there():
+    asked = {"probe": [{"x": 0.5, "y": 0.1}], "level": [{"x": 0.5}]}
+    wrong = "is of water, of which there is none; leave it out"
+    said = refusals(lambda: scene(depth=0.0, soil={"saturated": False}, **asked))
+    assert said == [f"probe = 'given': {wrong}", f"level = 'given': {wrong}"]
+    scene(depth=0.0, **asked)  # a check that must not refuse: water in pores is water
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""`check` warns of choices of method that were seen to change the volume of splashing water."""
+"""`check` warns of choices of method that were seen to change volume or pressure of water."""
 
 import pytest
 
@@ -39,3 +39,10 @@ def test_gradients_of_water_in_ground_are_what_they_are_whatever_is_asked_for():
 @pytest.mark.parametrize("numerics", [{}, {"gradient": "corrected", "shifting": 2.0}])
 def test_what_keeps_volume_best_is_not_warned_of(numerics):
     assert not warnings(0.5, **numerics)
+
+
+def test_image_walls_are_warned_of_and_walls_that_carry_pressure_are_not():
+    given = scene_as_dict(trials.column_scene(0.05, tank=(1.0, 1.0), column=(1.0, 0.5)))
+    for kind, said in (("images", 1), ("pressure", 0)):
+        whole = validate(Scene, given | {"tank": given["tank"] | {"wall_particles": kind}})
+        assert sum("image walls" in text for text in report(whole).warnings) == said

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.parts.soil import geostatic, soil_law
+from continuum_sph.builders.report import report
 from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
@@ -290,6 +291,11 @@ def test_a_stress_at_rest_beyond_the_strength_is_warned_of(cohesion):
     assert warned(0.99 * least) == (least > 0.0)
 
 
+def test_motion_that_is_braked_to_the_end_is_warned_of():
+    for settle, said in ((0.2, 1), (0.19, 0)):  # of 0.2 s
+        assert sum("is braked" in it for it in report(scene(numerics={"settle": settle})).warnings) == said
+
+
 @pytest.mark.parametrize(
     ("soil", "key"),
     [
@@ -297,6 +303,7 @@ def test_a_stress_at_rest_beyond_the_strength_is_warned_of(cohesion):
         ({"body": [{"outline": [[0, 0], [0.4, 0.4]]}]}, "soil.body[0].outline"),
         ({"dilatancy_angle": "31 degree"}, "soil.dilatancy_angle"),
         ({"cohesion": 100.0, "tension": 200.0}, "soil.tension"),
+        ({"rest": 0.5, "stress": "none"}, "soil.rest"),
     ],
 )
 def test_ground_that_cannot_be_is_refused(soil, key):

@@ -7,6 +7,8 @@ import tomllib
 import pytest
 
 from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.analysis.material import EXPONENT, UNITS
+from porescale.cli.homogenise import UNTIL
 from porescale.cli.main import commands
 from porescale.common.cli.application import application, main
 from porescale.common.compiled import jit
@@ -86,6 +88,7 @@ def test_what_is_asked_must_make_sense(tmp_path, asks):
         code, lines = asks("homogenise", file, "--until", wrong)
         assert (code, len(lines)) == (2, 1)
         assert "--until" in lines[0]
+    assert {EXPONENT} < set(UNTIL.values()) < set(UNITS)  # each word is a number that is measured
     code, lines = asks("homogenise", tmp_path / "none.toml")
     assert (code, len(lines)) == (2, 1)
 
