@@ -121,7 +121,7 @@ class SaturatedCells:
         self._stands = np.zeros(self._placed.shape, np.bool_)
         self._summed = False  # whether the areas that the body force pushes are those of the patches
         self._covered: Reals | None = None
-        self._set_loads(count, np.asarray(fluid.force))
+        self._set_loads(count, np.asarray(fluid.force, float))
         self._theta = np.zeros(count)
         self.soft_rim = SoftRim(self.radius, shift, tau, self._theta[:discs]) if soft_rim else None
 
@@ -167,16 +167,20 @@ class SaturatedCells:
         self._slow_load, self._shift = np.zeros((count, 3)), np.zeros((count, 3))
         self.cut = np.zeros(0, np.int64)
         self._direct = np.zeros((count, 2))
-        self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * force
+        self._set_direct()
+
+    def _set_direct(self) -> None:
+        """What the body force adds at once to the loads of discs and polygons."""
+        covered = np.pi * self.covering_radius**2
         if self.polygons:
-            self._direct[discs:movers] = -self.polygons.covered_area[:, None] * force
+            covered = np.append(covered, self.polygons.covered_area)
+        self._direct[: len(covered)] = -covered[:, None] * self._drive[: len(covered)]
 
     def _follow_force(self, force: Reals, centre: Reals) -> None:
         """What a body force of every cell (2, ny, nx) does to bodies at once: as if it were that at their centres."""
         x, y = (np.clip(centre[:, a].astype(np.int64), 0, self._shape[1 - a] - 1) for a in (0, 1))
         self.driven, self._drive[:] = True, force[:, y, x].T
-        discs = len(self.radius)
-        self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * self._drive[:discs]
+        self._set_direct()
 
     def _push_bodies(self) -> None:
         """What the body force would do to the fluid where the bodies are, which is theirs to bear (push.py).
@@ -346,7 +350,7 @@ class SaturatedCells:
         if self.soft_rim:
             self.soft_rim.follow(patches, fluid.ny, self.periodic_y, row_load)
         if self.bodies:
-            self.bodies.after(fluid, patches, self._load, self._direct)
+            self.bodies.after(fluid, patches, self._load, self._drive, self._direct)
 
     def flow(self, fluid: Fluid, centre: Reals, velocity: Reals, spin: Reals) -> tuple[NDArray[np.floating], ...]:
         """Density and momentum (rho, jx, jy) of every cell halfway through its collision, each (ny, nx): what flows.

@@ -20,8 +20,7 @@ DENSITY_SHARE = 0.1
 class Bodies:
     """Shapes beside ``discs`` discs, after which they come in all arrays of bodies.
 
-    centre, velocity (n, 2), spin (n,): of all bodies, as kernels read them;  direct (m, 2): what the body force on the
-    fluid adds to the load of a shape at once.
+    centre, velocity (n, 2), spin (n,): of all bodies, as kernels read them.
     load (m, 3): force and torque of the fluid on the shapes in the last step;  mass: what has come in through sides
     with them and was not taken out again.  Lattice units.  A step allocates a few bytes, and more where a ring moves.
     """
@@ -32,11 +31,10 @@ class Bodies:
         self._fluid = fluid
         count, m = discs + len(shapes), len(shapes)
         self.centre, self.velocity, self.spin = np.zeros((count, 2)), np.zeros((count, 2)), np.zeros(count)
-        self.load, self.direct, self.touching = np.zeros((m, 3)), np.zeros((m, 2)), np.zeros(m, np.bool_)
+        self.load, self.touching = np.zeros((m, 3)), np.zeros(m, np.bool_)
         self.mass = 0.0
         self._links = side_links(fluid)
         self._grid = fluid.nx, fluid.ny, *fluid.sides.periodic
-        self._force = np.asarray(fluid.force, float)
         self._filled: list[Reals | None] = [None] * m
         self._inside, self._borne = np.zeros((m, 2)), np.zeros((m, 3))
         self._before = np.zeros((m, 3))
@@ -62,7 +60,6 @@ class Bodies:
             fraction = patches.fraction[start : start + stride * height].reshape(height, stride)
             shape.fill(self._fluid, patches.corner[n], fraction)
             inside_of(fraction, patches.corner[n], shape.centre, self._inside[k])
-            self.direct[k] = -self._inside[k, 0] * self._force
 
     def before(self, fluid: Fluid, patches: Patches, shift: Reals, slow_load: Reals) -> None:
         """Let the sides move with what reaches through them in the step to come.
@@ -86,16 +83,19 @@ class Bodies:
         """Let no side move with what reaches through it from now on: the common mistake, for comparison."""
         self._links.size[:] = 0.0
 
-    def after(self, fluid: Fluid, patches: Patches, load: Reals, direct: Reals) -> None:
+    def after(self, fluid: Fluid, patches: Patches, load: Reals, force: Reals, direct: Reals) -> None:
         """The shapes' loads: ``load`` (n, 3) of all bodies' cells, less what sides bear, and the rate at which the
-        velocity of the fluid inside changes, given back.  Overwrites the shapes' rows of direct (n, 2)."""
+        velocity of the fluid inside changes, given back.
+
+        force (n, 2): the body force at each body.  Overwrites the shapes' rows of direct (n, 2), what it adds at once.
+        """
         side_loads(
             self.discs, self._grid, patches, self.centre, self.velocity, self.spin, self._links, fluid.links.added,
             fluid.flat, self._borne,
         )  # fmt: skip
         shape_loads(load[self.discs :], self._borne, self._inside, self.velocity[self.discs :],
                     self.spin[self.discs :], self._before, self.load)  # fmt: skip
-        direct[self.discs :] = self.direct
+        direct[self.discs :] = -self._inside[:, :1] * force[self.discs :]
 
     def restore_mass(self, fluid: Fluid, patches: Patches) -> float:
         """Take ``mass`` out of the fluid evenly, at rest and in equilibrium; returns it and counts anew.
