@@ -178,7 +178,9 @@ class SaturatedCells:
 
     def _follow_force(self, force: Reals, centre: Reals) -> None:
         """What a body force of every cell (2, ny, nx) does to bodies at once: as if it were that at their centres."""
-        x, y = (np.clip(centre[:, a].astype(np.int64), 0, self._shape[1 - a] - 1) for a in (0, 1))
+        wide, at = self._shape[::-1], np.floor(centre).astype(np.int64)
+        within = np.clip(at, 0, np.subtract(wide, 1))
+        x, y = np.where((self.periodic_x, self.periodic_y), at % wide, within).T
         self.driven, self._drive[:] = True, force[:, y, x].T
         self._set_direct()
 

@@ -138,3 +138,15 @@ def test_a_force_of_every_cell_that_is_the_same_everywhere_does_what_a_uniform_o
     uniform = made(1e-5)
     assert made(0.0, 1e-5) == uniform
     assert made(0.0, 1.01e-5) > 1.005 * uniform  # the check that must fail: a hundredth more is seen
+
+
+def test_a_disc_that_has_crossed_a_periodic_side_has_the_force_of_the_cells_it_is_in():
+    fluid = Fluid(24, 16, 0.8, sides=PERIODIC)
+    fluid.set_force_field(np.stack((np.tile(1e-5 * np.arange(24.0), (16, 1)), np.zeros((16, 24)))))
+    cells, still, pushes = SaturatedCells(fluid, np.array([3.0])), (np.zeros((1, 2)), np.zeros(1)), []
+    for x in (4.2, 28.2, -19.8, 5.2):
+        cells.find_push(fluid, np.array([(x, 8.1)]), *still)
+        pushes.append(float(cells.push[0, 0]))
+    # The places of cells a period on differ by round-off of a coordinate, 24 eps of a cell.
+    assert pushes[1:3] == pytest.approx([pushes[0]] * 2, rel=1e-13)
+    assert pushes[3] == pytest.approx(1.25 * pushes[0], rel=1e-6)  # the check that must fail: a cell on it is more
