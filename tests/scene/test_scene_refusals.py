@@ -391,7 +391,7 @@ def test_two_measurements_of_one_name_are_refused_and_two_without_one_are_not(se
 
 @pytest.mark.parametrize("key", ["contact__friction", "contact__wall_friction"])
 def test_friction_without_a_spring_or_dashpot_along_the_contact_has_no_effect_and_is_refused(key):
-    smooth = {"contact__friction": 0.0, "contact__tangential_stiffness": 0.0}
+    smooth = {"contact__friction": 0.0, "contact__tangential_stiffness": 0.0, "gate__friction": 0.0}
     derive(column(**smooth))
     (line,) = lines(**{**smooth, key: 0.3})
     assert line.startswith("contact.tangential_stiffness: is needed where there is friction")

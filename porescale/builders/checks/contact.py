@@ -8,6 +8,9 @@ from porescale.dem.contact.materials import MOST
 from porescale.scene.contact import DAMPED, Contact, Pair, Touch
 from porescale.scene.scene import Scene
 
+SLIDING = "friction", "tangential_stiffness", "tangential_damping"
+ROLLING = "rolling_friction", "rolling_stiffness", "rolling_damping"
+
 
 def check_contact(scene: Scene) -> list[Fault]:
     """What is wrong with the laws of a scene that has [contact]."""
@@ -27,11 +30,28 @@ def check_contact(scene: Scene) -> list[Fault]:
         faults += _check_kind(key, section, law_class(contact))
     if faults:
         return faults
+    of_surfaces = [contact.wall_friction, scene.gate.friction if scene.gate else None]
+    of_surfaces += [*(it.friction for it in scene.wall), *(it.friction for it in scene.rectangle)]
     for key, section in sections[1 : 1 + len(scene.material)] or sections[:1]:
         numbers = merged(contact, section)
-        most = {"friction": max(numbers.get("friction", 0.0), contact.wall_friction or 0.0)}
+        most = {"friction": max(numbers.get("friction", 0.0), *(it or 0.0 for it in of_surfaces))}
         faults += _check_complete(key, numbers | most, contact)
+    for k, pair in enumerate(contact.pair) if not faults else ():
+        faults += _friction_faults(f"contact.pair[{k}]", _between(pair, scene), contact)
     return faults
+
+
+def _between(pair: Pair, scene: Scene) -> dict[str, float]:
+    """The numbers of friction and rolling of a pair: its own, above what two materials have together, where springs are
+    in series and friction is the smaller one.  Rolling is left out where the pair says nothing of it."""
+    assert scene.contact
+    contact, own, names = scene.contact, pair.numbers(), [it.name for it in scene.material]
+    one, other = (merged(contact, scene.material[names.index(name)]) for name in pair.materials)
+    found = {}
+    for key in (*SLIDING, *(ROLLING if any(key in own for key in ROLLING) else ())):
+        both = one.get(key, 0.0), other.get(key, 0.0)
+        found[key] = own.get(key, max(both) if key.endswith("damping") else min(both))
+    return found
 
 
 def material_doubts(scene: Scene) -> list[str]:
@@ -114,8 +134,10 @@ def _check_complete(key: str, numbers: dict[str, float], contact: Contact) -> li
     if ways and sum(way in numbers for way in ways) != 1:
         problem, repair = "exactly one of the two is needed", "give one, leave the other out"
         faults.append(Fault(f"{key}.{', '.join(ways)}", None, problem, repair=repair))
-    wrong = law.friction_problem(numbers)
-    if wrong:
-        one, problem, repair = wrong
-        faults.append(Fault(f"{key}.{one}", None, problem, "", "> 0", repair))
-    return faults
+    return faults + _friction_faults(key, numbers, contact)
+
+
+def _friction_faults(key: str, numbers: dict[str, float], contact: Contact) -> list[Fault]:
+    """What lacks for friction and rolling to have an effect, or has none."""
+    wrong = law_class(contact).friction_problem(numbers)
+    return [Fault(f"{key}.{wrong[0]}", None, wrong[1], "", "> 0", wrong[2])] if wrong else []
