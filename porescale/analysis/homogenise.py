@@ -10,6 +10,7 @@ import math
 from typing import Any
 
 from porescale.builders.initial.contact_laws import MaterialPlan, law_class
+from porescale.builders.initial.packing import radii_of
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.sections import scene_as_dict, validate
@@ -132,6 +133,10 @@ def cell_of(section: Homogenise, packing: Packing) -> tuple[float, float]:
     else:
         discs = section.grains * math.pi / 4.0 * (1.0 + packing.size_spread**2 / 3.0)
         side = packing.diameter * math.sqrt(discs / SOLID)
+    if packing.grading or packing.log_spread is not None:  # by how many are drawn up for that side
+        drawn = radii_of(packing.model_copy(update={"width": side, "height": side, "packing_fraction": SOLID}))
+        assert drawn is not None
+        side *= math.sqrt(section.grains / len(drawn))
     slender = math.sqrt(section.aspect_ratio)
     return side / slender, side * slender
 

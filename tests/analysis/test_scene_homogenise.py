@@ -8,6 +8,7 @@ import pytest
 from porescale import Scene, check
 from porescale.analysis.biaxial import WINDOW, numbers, running
 from porescale.analysis.homogenise import WAVES, pressure_of, ramp_of, section_of, specimen, stiffness_over_pressure
+from porescale.builders.initial.placed import packed_count
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from porescale.validation import homogenise as verify
@@ -36,6 +37,16 @@ def test_a_specimen_of_given_sizes_has_their_shares():
     assert made.sizes == ((0.0008, 150.0), (0.0012, 50.0))
     assert made.packing_fraction == pytest.approx(0.83, rel=1e-12)  # SOLID, by the side of the cell
     assert made.sizes != scene.grains.packing.sizes  # the twin: the numbers of the scene are those of its column
+
+
+@pytest.mark.parametrize("sizes", [{"log_spread": 0.5}, {"grading": [[0.0005, 0], [0.001, 50], [0.0025, 100]]}])
+def test_a_specimen_of_many_sizes_has_the_number_of_grains_that_is_asked_for(sizes):
+    # A cell is as large as so many grains of the mean area need, and the last of them counts or does not.
+    packing = {"diameter": None if "grading" in sizes else 0.001, "left": 0, "width": 0.008, "height": 0.006, **sizes}
+    scene = dry(homogenise={"pressure": 100, "grains": 400}, **{f"grains__packing__{k}": v for k, v in packing.items()})
+    made = validate(Scene, specimen(scene))
+    assert abs(packed_count(made) - 400) <= 2
+    assert packed_count(scene) < 100  # the check that must fail: the packing of the scene has as many as it has
 
 
 def test_a_known_soil_is_found():
