@@ -44,19 +44,22 @@ def touching(grains: Grains) -> NDArray[np.int64]:
 
 
 def solid_in(grains: Grains, placed: Sequence[Placed], region: Region) -> float:
-    """Area (m^2) of all frames in a region: polygons exactly, rods at the share of their ends in it.
+    """Area (m^2) of all frames in a region, periodic images too: polygons exactly, rods at the share of their ends in
+    it.
 
-    Their thickness is not counted, as it has no mass.  Not of images through periodic sides.
+    Their thickness is not counted, as it has no mass.
     """
-    first, total = disc_count(grains), 0.0
+    first, total, period = disc_count(grains), 0.0, grains.period
     for it in placed:
         at = grains.discs.position[first : first + len(it.frame.corners)]
         first += len(it.frame.corners)
         area = it.frame.mass_properties().area or 0.0
         if it.frame.closed and it.kind != "container":
-            total += clipped_area(at[it.frame.loop], region)
+            at = at[it.frame.loop] + region.near(at[:1], period) - at[:1]
+            for shift in region.shifts(at, at, period):
+                total += clipped_area(at + shift, region)
         elif it.free:
-            total += area * float(np.mean(np.all((at >= region.lower) & (at <= region.upper), axis=1)))
+            total += area * float(np.mean(region.holds(at, period)))
     return total
 
 
