@@ -8,7 +8,7 @@ import pytest
 from porescale.builders.build import build
 from porescale.builders.parts.frame_measures import solid_in
 from porescale.dem.measures.region import Region
-from tests.reference.scenes import dry
+from tests.reference.scenes import dry, grain
 
 WIDTH, HEIGHT, SIDE = 0.012, 0.008, 0.002
 SQUARE: dict[str, Any] = {
@@ -35,3 +35,22 @@ def test_tiles_of_a_periodic_box_hold_all_of_a_polygon_wherever_it_has_gone(gone
     within = np.clip(min(edge + SIDE, 0.006) - edge, 0.0, SIDE) + max(edge + SIDE - WIDTH, 0.0)
     assert left == pytest.approx(SIDE * within, abs=1e-9 * SIDE**2)
     assert solid_in(grains, simulation.frames, Region((0.0, 0.0), (WIDTH, 0.004))) == pytest.approx(SIDE**2 / 2)
+
+
+def test_a_grain_that_has_gone_round_a_periodic_box_presses_on_its_floor_where_it_is_seen() -> None:
+    scene = {"grains": {"density": 2500, "grain": [grain(0.004, 0.0004999)]}, "output__forces": True}
+    simulation = build(dry(**{**BOX, **scene, "gravity": [0.0, -9.81]}))
+    simulation.advance(1)
+    grains = simulation.grains
+    assert grains
+
+    def moment() -> float:
+        """Of the grain on the floor, about the middle of it."""
+        return simulation.tables()["forces"]["bottom wall moment (N m/m)"]
+
+    force, first = simulation.tables()["forces"]["bottom wall force y (N/m)"], moment()
+    assert first == pytest.approx((0.004 - 0.5 * WIDTH) * force, rel=1e-9) != 0.0
+    grains.discs.position[0, 0] += 3.0 * WIDTH
+    assert moment() == pytest.approx(first, rel=1e-9)  # its place is good to eps times three periods
+    grains.discs.position[0, 0] += 1e-5
+    assert moment() != pytest.approx(first, rel=1e-3)  # the check that must fail: a hundredth of a diameter is seen

@@ -101,6 +101,8 @@ class GrainInstruments(Part):
         """
         grains = self.grains
         row: Row = {}
+        box = Region(grains.box.lower, grains.box.upper)
+        within = replace(found, point=box.near(found.point, grains.period))  # a side is a period long, a wall endless
         points = middles(grains)
         points += [(float(it[X]), 0.5 * float(it[LOW] + it[HIGH])) for it in grains.plates]
         points += [
@@ -108,7 +110,7 @@ class GrainInstruments(Part):
         ]
         for name, middle in zip(found.names, points, strict=True):
             shown = f"{name} wall" if name in SIDES else name
-            fx, fy, moment = on_surface(found, name, middle)
+            fx, fy, moment = on_surface(within if name in SIDES else found, name, middle)
             row |= {f"{shown} force x (N/m)": fx, f"{shown} force y (N/m)": fy, f"{shown} moment (N m/m)": moment}
         row |= walls.row(grains)
         discs = np.flatnonzero(self.held[: disc_count(grains)]).tolist()
