@@ -6,6 +6,7 @@ import numpy as np
 
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.parts.material import material_of
+from continuum_sph.builders.parts.pore_water import largest_modulus
 from continuum_sph.builders.parts.soil import SoilPart, porous_section, soil_flow, soil_section
 from continuum_sph.builders.sanity import Now, Range, require_finite, require_within
 from continuum_sph.scene.sections import Scene
@@ -122,7 +123,7 @@ def rest(scene: Scene, both: MoistSoil, material: Material) -> None:
 def moist_soil(scene: Scene) -> MoistSoil:
     """Soil and its water, ready for the first step."""
     section, suction, ground = porous_section(scene), suction_section(scene), soil_flow(scene)
-    law, material, spacing, soil = retention_of(scene), material_of(section), scene.numerics.spacing, ground.soil
+    law, spacing, soil = retention_of(scene), scene.numerics.spacing, ground.soil
     smoothing = ground.law.smoothing
     c = unity(smoothing.kind, smoothing.length / spacing)
     properties = properties_of(scene.water.density, scene.gravity, law, spacing, c, suction.connectivity)
@@ -135,11 +136,9 @@ def moist_soil(scene: Scene) -> MoistSoil:
     water.place(x, area)
     require_filled(scene, x[:, 1])
     water.fill(initial_pressure(scene, x[:, 1]))
-    pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
-    modulus = material.column_modulus * material.stiffness_at(pressure) / material.stiffness
-    both = MoistSoil(ground, water, outside_of(scene, ground), modulus)
+    both = MoistSoil(ground, water, outside_of(scene, ground), largest_modulus(scene))
     both.look(0.0)
-    rest(scene, both, material)
+    rest(scene, both, material_of(section))
     both.start()
     return both
 

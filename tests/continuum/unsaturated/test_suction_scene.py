@@ -115,6 +115,15 @@ def test_check_says_how_high_water_is_drawn_and_how_soon():
     assert f"{fringe:.4g}"[:5] in text
 
 
+@pytest.mark.parametrize("exponent", [0.0, 0.5])
+def test_check_holds_the_water_against_soil_as_stiff_as_its_weight_makes_it(exponent):
+    """With an exponent it was held against soil at the reference stress, 100 kPa, and the step was that of such soil."""
+    out = report(scene(soil={"stiffness": 1e7, "exponent": exponent}, water={"sound_speed": 300.0}))
+    found = {row.name: row.value for group in out.groups.values() for row in group}
+    modulus = found["modulus of a column, B + G"]
+    assert found["stiffness of the water K_w/(n M)"] == pytest.approx(1000.0 * 300.0**2 / (0.4 * modulus), rel=1e-12)
+
+
 def test_check_warns_of_water_that_is_soft_and_of_levels_over_the_crest():
     assert any("n M" in it for it in report(scene(water={"sound_speed": 20.0})).warnings)
     assert any("both sides" in it for it in report(scene(**UNDER)).warnings)
