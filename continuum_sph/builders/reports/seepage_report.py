@@ -86,7 +86,7 @@ def seepage_report(scene: Scene) -> Report:
     buoyant = section.density - (1.0 - section.porosity) * state.density
     pressure = 0.5 * buoyant * scene.gravity * section.height * (1.0 + material_of(section).rest)
     report_softening(out, section, soil_law(scene), pressure)
-    report_rate(out, section, wet=True)
+    report_rate(out, scene, wet=True)
     warn_of_steep_faces(scene, out)
     report_origin(out, section.origin)
     if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < STANDS:
