@@ -34,6 +34,8 @@ from porescale.common.record.part import Part
 from porescale.common.schema.names import names_of
 
 REPAIR = "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant"
+GAP = 1.5
+"""Spacings between two particles of a column that do not stand on each other."""
 FULLEST = 1.5
 """Filling of pores beyond which the water would be compressed by a half."""
 
@@ -96,8 +98,8 @@ def outside_of(scene: Scene, ground: SoilFlow) -> Outside:
 
 
 def rest(scene: Scene, both: MoistSoil, material: Material) -> None:
-    """Effective stress of soil at rest under its weight, its water's, and open water: what is over a particle less π,
-    σ_xx = K0 σ_yy."""
+    """Effective stress of soil at rest under its weight, its water's, and open water: what stands over a particle
+    without a gap, less π, σ_xx = K0 σ_yy."""
     section, soil, n = soil_section(scene), both.ground.soil, both.ground.soil.soil
     if section.stress == "none":
         return
@@ -109,11 +111,13 @@ def rest(scene: Scene, both: MoistSoil, material: Material) -> None:
     for column in np.unique(np.floor(x[:, 0] / spacing)):
         rows = np.flatnonzero(np.floor(x[:, 0] / spacing) == column)
         rows = rows[np.argsort(-x[rows, 1])]
-        near = np.abs(both.outside.x[:, 0] - x[rows[0], 0]) < 0.5 * spacing
-        over = near & (both.outside.x[:, 1] > x[rows[0], 1])
-        head = float(both.outside.places[over, 2].max(initial=0.0))
-        top = max(0.0, law.weight * (head - x[rows[0], 1] - 0.5 * spacing))
-        upright[rows] = top + np.cumsum(weight[rows]) - 0.5 * weight[rows] - pore[rows]
+        near, ceiling = np.abs(both.outside.x[:, 0] - x[rows[0], 0]) < 0.5 * spacing, np.inf
+        for piece in np.split(rows, np.flatnonzero(np.diff(x[rows, 1]) < -GAP * spacing) + 1):
+            over = near & (both.outside.x[:, 1] > x[piece[0], 1]) & (both.outside.x[:, 1] < ceiling)
+            head = float(both.outside.places[over, 2].max(initial=0.0))
+            top = max(0.0, law.weight * (head - x[piece[0], 1] - 0.5 * spacing))
+            upright[piece] = top + np.cumsum(weight[piece]) - 0.5 * weight[piece] - pore[piece]
+            ceiling = x[piece[-1], 1]
     upright = np.maximum(upright, 0.0)
     k0 = material.rest if section.rest is None else section.rest
     soil.stress[:n, XX], soil.stress[:n, YY], soil.stress[:n, XY] = k0 * upright, upright, 0.0
