@@ -38,7 +38,7 @@ class Threads:
         self.take = take
         self.counts = [*(1 << k for k in range(self.most.bit_length()) if 1 << k < self.most), self.most]
         self.at, self.other, self.turn = len(self.counts) - 1, 0, 0
-        self.wait, self.trials, self.settled = SOON, 0, len(self.counts) == 1
+        self.wait, self.trials, self.slower = SOON, 0, set[int]()
         self.steps, self.seconds = 0, 0.0
         self.rates: list[float] | None = None  # of the number taken, of the other one, of the first again
 
@@ -52,6 +52,15 @@ class Threads:
     def count(self) -> int:
         """Threads that were found to be fastest so far."""
         return self.counts[self.at]
+
+    @property
+    def settled(self) -> bool:
+        """Whether all that are tried beside that number were slower the last time."""
+        return not self._beside() - self.slower
+
+    def _beside(self) -> set[int]:
+        """Which numbers are tried beside that taken: half of it, one, twice as many."""
+        return {self.at - 1, 0, self.at + 1} & set(range(len(self.counts))) - {self.at}
 
     def advance(self, model: "Model", steps: int) -> float:
         """Advance a model, and count it unless kernels were compiled; returns seconds of the wall clock."""
@@ -84,16 +93,16 @@ class Threads:
         """Which number is tried now: half of that taken, one, twice as many, and so on."""
         while True:
             found = (self.at - 1, 0, self.at + 1)[self.turn % 3]
-            if found != self.at and 0 <= found < len(self.counts):
+            if found in self._beside():
                 return found
             self.turn += 1
 
     def _judge(self, before: float, other: float, after: float) -> None:
         """Take the other number if its rate, steps a second, was higher than those before and after."""
         self.trials += 1
-        self.settled = other <= GAIN * max(before, after)
-        if self.settled:
+        if other <= GAIN * max(before, after):
             self.turn, self.wait = self.turn + 1, min(2.0 * self.wait, LATE)
+            self.slower.add(self.other)
         else:
-            self.at, self.wait = self.other, SOON
+            self.at, self.wait, self.slower = self.other, SOON, set()
             self.take(self.count)
