@@ -64,6 +64,7 @@ def look_of_scene(
         lines=lines,
         dot=0.5 * scene["numerics"]["spacing"],
         view=(-margin, width + margin, -margin, height + margin),
+        box=(0.0, width, 0.0, height),
         density=scene["water"]["density"],
         **more,
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.parts.material import material_of
+from continuum_sph.builders.parts.pore_water import largest_modulus
 from continuum_sph.builders.parts.soil import SoilPart, porous_section, soil_flow, soil_section
 from continuum_sph.builders.sanity import Now, Range, require_finite, require_within
 from continuum_sph.scene.sections import Scene
@@ -33,6 +34,8 @@ from porescale.common.record.part import Part
 from porescale.common.schema.names import names_of
 
 REPAIR = "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant"
+GAP = 1.5
+"""Spacings between two particles of a column that do not stand on each other."""
 FULLEST = 1.5
 """Filling of pores beyond which the water would be compressed by a half."""
 
@@ -95,8 +98,8 @@ def outside_of(scene: Scene, ground: SoilFlow) -> Outside:
 
 
 def rest(scene: Scene, both: MoistSoil, material: Material) -> None:
-    """Effective stress of soil at rest under its weight, its water's, and open water: what is over a particle less π,
-    σ_xx = K0 σ_yy."""
+    """Effective stress of soil at rest under its weight, its water's, and open water: what stands over a particle
+    without a gap, less π, σ_xx = K0 σ_yy."""
     section, soil, n = soil_section(scene), both.ground.soil, both.ground.soil.soil
     if section.stress == "none":
         return
@@ -108,11 +111,13 @@ def rest(scene: Scene, both: MoistSoil, material: Material) -> None:
     for column in np.unique(np.floor(x[:, 0] / spacing)):
         rows = np.flatnonzero(np.floor(x[:, 0] / spacing) == column)
         rows = rows[np.argsort(-x[rows, 1])]
-        near = np.abs(both.outside.x[:, 0] - x[rows[0], 0]) < 0.5 * spacing
-        over = near & (both.outside.x[:, 1] > x[rows[0], 1])
-        head = float(both.outside.places[over, 2].max(initial=0.0))
-        top = max(0.0, law.weight * (head - x[rows[0], 1] - 0.5 * spacing))
-        upright[rows] = top + np.cumsum(weight[rows]) - 0.5 * weight[rows] - pore[rows]
+        near, ceiling = np.abs(both.outside.x[:, 0] - x[rows[0], 0]) < 0.5 * spacing, np.inf
+        for piece in np.split(rows, np.flatnonzero(np.diff(x[rows, 1]) < -GAP * spacing) + 1):
+            over = near & (both.outside.x[:, 1] > x[piece[0], 1]) & (both.outside.x[:, 1] < ceiling)
+            head = float(both.outside.places[over, 2].max(initial=0.0))
+            top = max(0.0, law.weight * (head - x[piece[0], 1] - 0.5 * spacing))
+            upright[piece] = top + np.cumsum(weight[piece]) - 0.5 * weight[piece] - pore[piece]
+            ceiling = x[piece[-1], 1]
     upright = np.maximum(upright, 0.0)
     k0 = material.rest if section.rest is None else section.rest
     soil.stress[:n, XX], soil.stress[:n, YY], soil.stress[:n, XY] = k0 * upright, upright, 0.0
@@ -122,7 +127,7 @@ def rest(scene: Scene, both: MoistSoil, material: Material) -> None:
 def moist_soil(scene: Scene) -> MoistSoil:
     """Soil and its water, ready for the first step."""
     section, suction, ground = porous_section(scene), suction_section(scene), soil_flow(scene)
-    law, material, spacing, soil = retention_of(scene), material_of(section), scene.numerics.spacing, ground.soil
+    law, spacing, soil = retention_of(scene), scene.numerics.spacing, ground.soil
     smoothing = ground.law.smoothing
     c = unity(smoothing.kind, smoothing.length / spacing)
     properties = properties_of(scene.water.density, scene.gravity, law, spacing, c, suction.connectivity)
@@ -135,11 +140,9 @@ def moist_soil(scene: Scene) -> MoistSoil:
     water.place(x, area)
     require_filled(scene, x[:, 1])
     water.fill(initial_pressure(scene, x[:, 1]))
-    pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
-    modulus = material.column_modulus * material.stiffness_at(pressure) / material.stiffness
-    both = MoistSoil(ground, water, outside_of(scene, ground), modulus)
+    both = MoistSoil(ground, water, outside_of(scene, ground), largest_modulus(scene))
     both.look(0.0)
-    rest(scene, both, material)
+    rest(scene, both, material_of(section))
     both.start()
     return both
 

@@ -9,7 +9,7 @@ from continuum_sph.builders.parts.soil import soil_law, soil_particles, soil_sec
 from continuum_sph.builders.parts.watched import watched_rows
 from continuum_sph.builders.reports.time_report import AVERAGE, SOIL, STAGE, report_run, step_seconds
 from continuum_sph.scene.bounds import WHOLE
-from continuum_sph.scene.material_file import VISCOSITY, Origin
+from continuum_sph.scene.material_file import Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection
 from continuum_sph.soil import SoilLaw
@@ -17,7 +17,6 @@ from continuum_sph.soil.material import Material
 from continuum_sph.soil.parameters import RULES
 from continuum_sph.soil.softening import band_width
 from porescale.common.api.report import Report, report_output
-from porescale.common.core.constants import GRAVITY
 
 SNAPSHOT = 80  # per particle of a snapshot on disk, about
 BYTES = 900  # per particle: state, record, and about 27 partners in two lists
@@ -65,7 +64,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
     warn_of_rest(out, section, material, material.density * scene.gravity * section.height)
     warn_of_steep_faces(scene, out)
     report_softening(out, section, law, pressure)
-    report_rate(out, section, wet=section.suction is not None)
+    report_rate(out, scene, wet=section.suction is not None)
     out.heading("steps")
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
     step = min(limits)
@@ -180,21 +179,22 @@ def averaging_seconds(law: SoilLaw, count: int) -> float:
     return law.averages * step_seconds((AVERAGE, count))
 
 
-def report_rate(out: Report, section: SoilSection, *, wet: bool) -> None:
+def report_rate(out: Report, scene: Scene, *, wet: bool) -> None:
     """Add to a report how the friction of a soil grows with the rate of shear, and warn of ``wet`` soil."""
+    section, viscosity = soil_section(scene), scene.water.viscosity
     rate = section.rate
     if rate is None:
         return
     out.heading("strength")
     fastest = math.degrees(math.atan(math.sin(rate.friction_angle)))
     out.row("angle beyond which it speeds up without end", fastest, "degrees", "without cohesion and dilatancy")
-    pace = math.sqrt(GRAVITY / section.height)
-    grains = section.density / (1.0 - section.porosity)
-    inertial = pace * rate.grain_diameter * math.sqrt(grains / (0.5 * section.density * GRAVITY * section.height))
+    pace, grains = math.sqrt(scene.gravity / section.height), section.density / (1.0 - section.porosity)
+    # of √(g/H) under ρ g H/2: the same under any gravity
+    inertial = rate.grain_diameter / section.height * math.sqrt(2.0 * grains / section.density)
     about = f"shear by √(g/H) at half of its height; I0 {rate.inertial_number:g}"
     out.row("inertial number of its own fall", inertial, "", about)
-    if wet:
-        stokes = grains * rate.grain_diameter**2 * pace / VISCOSITY
+    if wet and viscosity > 0.0:
+        stokes = grains * rate.grain_diameter**2 * pace / viscosity
         out.warn(f"[soil.rate] is of dry grains: in water, viscosity can brake them first (Stokes number {stokes:.2g})")
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from continuum_sph.builders.parts.material import material_of
+from continuum_sph.builders.parts.pore_water import largest_modulus
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles
 from continuum_sph.builders.parts.suction import require_filled, retention_of, suction_section
 from continuum_sph.builders.reports.seepage_report import report_stiffness
@@ -24,7 +24,7 @@ def suction_report(scene: Scene) -> Report:
     section, suction, law = porous_section(scene), suction_section(scene), retention_of(scene)
     require_filled(scene, soil_particles(scene)[0][:, 1])
     numbers, porosity, (least, most) = law.numbers, section.porosity, section.permeabilities
-    modulus, h = material_of(section).column_modulus, soil_law(scene).smoothing.length
+    modulus, h = largest_modulus(scene), soil_law(scene).smoothing.length
     whole = section.density + numbers.residual * porosity * scene.water.density
     step = SHARE * h / ((modulus + law.stiffness / porosity) / whole) ** 0.5
     # the fastest wave that the lattice has: 8/spacing² of D = k K_w/(n rho g), about

@@ -30,6 +30,7 @@ GAIN = 1.05
 class Threads:
     """Context in which kernels have as many threads as are fastest, at most as many as now; afterwards as many as now.
 
+    It can be entered again, for the next piece of a run, and goes on with what it has measured.
     most : threads (default: as many as now);  take : sets their number.
     """
 
@@ -38,11 +39,12 @@ class Threads:
         self.take = take
         self.counts = [*(1 << k for k in range(self.most.bit_length()) if 1 << k < self.most), self.most]
         self.at, self.other, self.turn = len(self.counts) - 1, 0, 0
-        self.wait, self.trials, self.settled = SOON, 0, len(self.counts) == 1
+        self.wait, self.trials, self.slower = SOON, 0, set[int]()
         self.steps, self.seconds = 0, 0.0
         self.rates: list[float] | None = None  # of the number taken, of the other one, of the first again
 
     def __enter__(self) -> "Threads":
+        self.take(self.counts[self._now()])
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -52,6 +54,15 @@ class Threads:
     def count(self) -> int:
         """Threads that were found to be fastest so far."""
         return self.counts[self.at]
+
+    @property
+    def settled(self) -> bool:
+        """Whether all that are tried beside that number were slower the last time."""
+        return not self._beside() - self.slower
+
+    def _beside(self) -> set[int]:
+        """Which numbers are tried beside that taken: half of it, one, twice as many."""
+        return {self.at - 1, 0, self.at + 1} & set(range(len(self.counts))) - {self.at}
 
     def advance(self, model: "Model", steps: int) -> float:
         """Advance a model, and count it unless kernels were compiled; returns seconds of the wall clock."""
@@ -78,22 +89,26 @@ class Threads:
             self._judge(*self.rates)
             self.rates = None
         else:
-            self.take(self.counts[self.other if len(self.rates) == 1 else self.at])
+            self.take(self.counts[self._now()])
+
+    def _now(self) -> int:
+        """Which number is timed now: in the middle of a trial the other one."""
+        return self.other if self.rates is not None and len(self.rates) == 1 else self.at
 
     def _next(self) -> int:
         """Which number is tried now: half of that taken, one, twice as many, and so on."""
         while True:
             found = (self.at - 1, 0, self.at + 1)[self.turn % 3]
-            if found != self.at and 0 <= found < len(self.counts):
+            if found in self._beside():
                 return found
             self.turn += 1
 
     def _judge(self, before: float, other: float, after: float) -> None:
         """Take the other number if its rate, steps a second, was higher than those before and after."""
         self.trials += 1
-        self.settled = other <= GAIN * max(before, after)
-        if self.settled:
+        if other <= GAIN * max(before, after):
             self.turn, self.wait = self.turn + 1, min(2.0 * self.wait, LATE)
+            self.slower.add(self.other)
         else:
-            self.at, self.wait = self.other, SOON
+            self.at, self.wait, self.slower = self.other, SOON, set()
             self.take(self.count)

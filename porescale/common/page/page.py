@@ -82,9 +82,9 @@ def require_alike(runs: Sequence[Run]) -> None:
 
 
 def _box(run: Run) -> tuple[float, float] | None:
-    """Width and height of what is shown, m."""
-    view = run.program.look(run).view
-    return None if view is None else (view[1] - view[0], view[3] - view[2])
+    """Width and height of the box, m."""
+    box = run.program.look(run).whole
+    return None if box is None else (box[1] - box[0], box[3] - box[2])
 
 
 def _size(box: tuple[float, float]) -> str:

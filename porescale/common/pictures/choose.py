@@ -155,7 +155,7 @@ class Wanted:
             given = ", ".join(map(str, self.view))
             raise InputError(Fault("view", given, "must be left, right, bottom, top", "m"))
         left, right, bottom, top = (_number("view", it, Quantity("m", help="sides of the view")) for it in self.view)
-        edges = look.view or next((grid.extent for grid in run.snapshot(-1).grids.values()), None)
+        edges = _around(look) or next((grid.extent for grid in run.snapshot(-1).grids.values()), None)
         allowed = f"x {edges[0]:g} to {edges[1]:g}, y {edges[2]:g} to {edges[3]:g}" if edges else ""
         given = f"{left:g}, {right:g}, {bottom:g}, {top:g}"
         if not (left < right and bottom < top):
@@ -207,10 +207,18 @@ def with_section(look: Look, section: Mapping[str, Any] | None, *, cells: bool =
             if key in given:
                 given.setdefault(of_points, given.pop(key))
     names = {"colour_limits": "cloud_limits"}
-    made = replace(look, **{names.get(key, key): _tuples(value) for key, value in given.items()})
+    made = replace(look, box=look.whole, **{names.get(key, key): _tuples(value) for key, value in given.items()})
     if "field" in given:
         made = replace(made, label="")
     return replace(made, kinds={}) if "colour" in given else made
+
+
+def _around(look: Look) -> tuple[float, float, float, float] | None:
+    """What a view may show, m: the box, and what is seen beside it; None where neither is known."""
+    if look.view is None or look.whole is None:
+        return None
+    (left, right, bottom, top), (a, b, c, d) = look.view, look.whole
+    return min(left, a), max(right, b), min(bottom, c), max(top, d)
 
 
 def _tuples(value: Any) -> Any:

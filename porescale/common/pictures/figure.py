@@ -92,7 +92,7 @@ def _surveyed(looked: Looked, wanted: Wanted, *, film: bool) -> tuple[Survey, li
 
 def require_same_box(looked: Looked) -> None:
     """InputError, with both sizes, unless the boxes of all runs are the same."""
-    views = [look.view for _, look in looked]
+    views = [look.whole for _, look in looked]
     for view in views[1:]:
         if view is None or views[0] is None:
             continue

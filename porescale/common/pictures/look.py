@@ -47,8 +47,9 @@ class Look:
     and grey as walls are;  walls : cell array holding a solid fraction, painted grey;  lines : segments
     ((x, y), (x, y)) m, or a function of the snapshot;  arrows : velocity arrows across the picture, 0 none, of the
     grid, or of dots;  streamlines : an extra still with them; dot : radius of a dot, m (None: about half the particles'
-    spacing);  view : (left, right, bottom, top), m;  period : of a box periodic in x, in y, m, 0 where it is not: what
-    reaches over a side is seen at the other, too;  size : long side, pixels;  plain : places and times are numbers
+    spacing);  view : (left, right, bottom, top), m, and box, all that there is, where the view is not that (None: the
+    view);  period : of a box periodic in x, in y, m, 0 where it is not: what reaches over a side is seen at the other,
+    too;  size : long side, pixels;  plain : places and times are numbers
     without units;  density : kg/m³ of the fluid, round_off : share of a length a step, by which velocities and
     pressures are known to be round-off;  title, label (of the field), colour_map, cloud_map.
     """
@@ -69,6 +70,7 @@ class Look:
     streamlines: bool = False
     dot: float | None = None
     view: View | None = None
+    box: View | None = None
     period: tuple[float, float] = (0.0, 0.0)
     size: int = 1000
     title: str = ""
@@ -78,6 +80,11 @@ class Look:
     cloud_map: str = ""
     density: float = 0.0
     round_off: float = 1e-12
+
+    @property
+    def whole(self) -> View | None:
+        """The box, m; None where it is not known."""
+        return self.box or self.view
 
     @property
     def cells(self) -> tuple[str, ...]:

@@ -59,6 +59,14 @@ def test_the_fastest_number_is_found_and_kept(most, speed, best):
     assert machine.threads.settled
 
 
+def test_a_number_is_settled_once_all_others_have_been_tried_beside_it():
+    machine = Machine(12, lambda count, _: 2.0 if count == 1 else 1.0)  # half as many are no faster, one is
+    while not machine.threads.settled:
+        machine.run(STEP)
+    assert machine.threads.count == 1
+    assert machine.threads.trials == 3  # eight and one beside twelve, two beside one
+
+
 def test_two_threads_on_a_busy_machine_last_a_second():
     machine = Machine(2, busy).run(20.0)
     assert machine.of[2] <= SOON + 2 * WINDOW + SOON + 2 * WINDOW + 1.0  # found, and tried again with longer waits
@@ -101,3 +109,13 @@ def test_afterwards_kernels_have_what_they_had():
     with Threads() as threads:
         threads.take(1)
     assert jit.threads() == before
+
+
+def test_pieces_of_a_run_go_on_with_what_is_measured():
+    machine = Machine(2, busy)
+    for _ in range(100):  # each shorter than what is timed
+        with machine.threads:
+            machine.run(0.02)
+        assert machine.taken == 2
+    with machine.threads:
+        assert machine.taken == 1

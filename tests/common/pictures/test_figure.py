@@ -12,7 +12,7 @@ from PIL import Image
 from porescale.common.core.errors import InputError
 from porescale.common.pictures.axes import draw
 from porescale.common.pictures.choose import Wanted, with_section
-from porescale.common.pictures.figure import figure_of, write_figure
+from porescale.common.pictures.figure import figure_of, require_same_box, write_figure
 from porescale.common.pictures.initial import Feature, Initial, initial_pixels
 from porescale.common.pictures.look import PLATE, Look, rgb, round_off, scale, survey
 from porescale.common.pictures.picture import Painter
@@ -154,6 +154,19 @@ def test_words_and_sections_change_the_look(jet):
     assert with_section(look, None) is look
     of_points = with_section(look, {"field": "spin", "limits": [0, 5]}, cells=False)
     assert (of_points.field, of_points.colour, of_points.cloud_limits) == ("velocity", "spin", (0, 5))
+
+
+def test_a_view_of_the_scene_is_part_of_its_box(jet, tmp_path):
+    run, look = jet
+    part = with_section(look, {"view": [0.0, 0.01, 0.0, 0.01]})
+    assert part.view == (0.0, 0.01, 0.0, 0.01)
+    assert Wanted(view=(0.0, WIDE, 0.0, HIGH)).look(part, run).view == look.view
+    require_same_box([jet, (run, part)])
+    with pytest.raises(InputError, match="out of the box"):  # the check that must fail
+        Wanted(view=(0.0, 2 * WIDE, 0.0, HIGH)).look(part, run)
+    wider = with_section(run_of(tmp_path / "wider", width=2 * WIDE)[1], {"view": [0.0, 0.01, 0.0, 0.01]})
+    with pytest.raises(InputError, match="another box"):
+        require_same_box([(run, part), (run, wider)])
 
 
 def test_held_discs_are_no_grains(jet):

@@ -9,6 +9,7 @@ from continuum_sph import Scene, build
 from continuum_sph.look import look_of_scene
 from continuum_sph.scene.look import shown_arrays
 from porescale.common.core.errors import InputError
+from porescale.common.pictures.figure import require_same_box
 
 BLOCK = {"body": [{"outline": [[0, 0], [0.5, 0], [0.5, 0.4], [0, 0.4]]}]}
 FACES = [{"side": "left", "head": 1.2}, {"side": "right", "head": 1.0}]
@@ -67,6 +68,14 @@ def test_all_that_snapshots_hold_can_be_shown_and_nothing_else(kind):
     for key in ("colour", "field"):
         line = f"look.{key} = 'vorticity': is not recorded (allowed: {allowed}); choose one of these"
         assert refused(kind, **{key: "vorticity"}) == [line]
+
+
+def test_other_boxes_are_named_by_their_tanks():
+    looks = [look_of_scene(Scene(**table("water", **more)).to_dict(), "") for more in ({}, {"view": [0, 0.2, 0, 0.2]})]
+    require_same_box([(None, it) for it in looks])
+    wider = look_of_scene(Scene(**table("water") | {"tank": {"width": 1.0, "height": 0.6}}).to_dict(), "")
+    with pytest.raises(InputError, match=r"against = '1 m x 0.6 m': is another box than 0.5 m x 0.6 m"):
+        require_same_box([(None, looks[0]), (None, wider)])
 
 
 @pytest.mark.parametrize("kind", KINDS)

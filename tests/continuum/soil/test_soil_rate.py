@@ -99,6 +99,21 @@ def test_check_says_what_the_rate_does_and_warns_in_water():
     assert "inertial number of its own fall" not in {r.name for g in report(scene(None)).groups.values() for r in g}
 
 
+def test_check_takes_gravity_and_viscosity_of_the_scene():
+    def stokes(**changes):
+        """The Stokes number that is warned of, and the inertial number of the fall."""
+        out = report(scene(GIVEN, saturated=True).with_(changes))
+        line = next(line for line in out.warnings if "Stokes number" in line)
+        fall = next(row.value for group in out.groups.values() for row in group if row.name.startswith("inertial"))
+        return float(line.split()[-1].rstrip(")")), fall
+
+    (usual, fall), (heavy, same) = stokes(), stokes(gravity=98.0665)
+    viscous, _ = stokes(**{"water.viscosity": 0.1002})
+    assert same == pytest.approx(fall, rel=1e-12)  # √g of the shear, and of the pressure
+    assert viscous == pytest.approx(0.01 * usual, rel=0.05)  # two digits are said
+    assert heavy == pytest.approx(10**0.5 * usual, rel=0.05)
+
+
 def test_check_warns_of_wet_pores_too():
     given = 'soil.rate={friction_angle="40 degree", inertial_number=0.3, grain_diameter=0.001}'
     wet = report(continuum_sph.load(CASES / "levee_by_suction", settings=[given]))

@@ -115,6 +115,15 @@ def test_check_says_how_high_water_is_drawn_and_how_soon():
     assert f"{fringe:.4g}"[:5] in text
 
 
+@pytest.mark.parametrize("exponent", [0.0, 0.5])
+def test_check_holds_the_water_against_soil_as_stiff_as_its_weight_makes_it(exponent):
+    """With an exponent it was held against soil at the reference stress, and the step was that of such soil."""
+    out = report(scene(soil={"stiffness": 1e7, "exponent": exponent}, water={"sound_speed": 300.0}))
+    found = {row.name: row.value for group in out.groups.values() for row in group}
+    modulus = found["modulus of a column, B + G"]
+    assert found["stiffness of the water K_w/(n M)"] == pytest.approx(1000.0 * 300.0**2 / (0.4 * modulus), rel=1e-12)
+
+
 def test_check_warns_of_water_that_is_soft_and_of_levels_over_the_crest():
     assert any("n M" in it for it in report(scene(water={"sound_speed": 20.0})).warnings)
     assert any("both sides" in it for it in report(scene(**UNDER)).warnings)
@@ -144,6 +153,20 @@ def test_a_column_over_its_water_table_stays_at_rest():
     # It sinks as soil does that is placed on its lattice, by a share of its elastic settlement (γ + suction) H/M
     assert model.series()["largest displacement (m)"] < 0.1 * (1990.0 * GRAVITY * 0.2 + 1000.0) * 0.2 / 1.35e6
     np.testing.assert_allclose(state[:, HEAD], 0.1, atol=0.002)  # what its strain has squeezed out flows in a second
+
+
+def test_a_block_over_a_gap_weighs_nothing_on_the_soil_below():
+    def lower(*blocks):
+        """Upright stress of the soil of OUTLINE, Pa, with blocks (bottom, top), m, over it."""
+        bodies = [{"outline": OUTLINE}, *({"outline": [[0, a], [0.3, a], [0.3, b], [0, b]]} for a, b in blocks)]
+        soil = suction.moist_soil(scene(soil={"body": bodies})).ground.soil
+        below = soil.x[: soil.soil, 1] < 0.2
+        return soil.stress[: soil.soil, YY][below]
+
+    alone = lower()
+    np.testing.assert_array_equal(lower((0.24, 0.36)), alone)
+    # the check that must fail: what stands on it is borne, (1 - n) rho_s and the water of its pores
+    assert (lower((0.2, 0.32)) - alone).min() > 1650.0 * GRAVITY * 0.12
 
 
 @pytest.mark.slow
