@@ -66,7 +66,8 @@ def sweep(
         points = [replace(it, settings=tuple(placed(text, kind, beside) for text in it.settings)) for it in points]
         texts = tuple(placed(text, kind, beside) for text in texts)
     with _as_file(program, scene, quality) as start:
-        file, name = check_points(program, start, points, quality, texts)
+        combined = "vary" if isinstance(vary, Mapping) and vary else ""
+        file, name = check_points(program, start, points, quality, texts, combined)
         if asked:
             points = repeated(program, start, points, asked, quality, texts)
             check_points(program, start, points, quality, texts)

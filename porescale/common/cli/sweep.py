@@ -73,7 +73,8 @@ def command(package: Package) -> Callable[..., int]:
         start = require_scene(scene, package.name)
         asked = Repeats(repeat, over)
         points = chosen_points(table, vary or (), asked)
-        file, name = check_points(package, start, points, quality, settings or ())
+        combined = "--vary" if vary and table is None else ""
+        file, name = check_points(package, start, points, quality, settings or (), combined)
         if asked:
             points = repeated(package, start, points, asked, quality, settings or ())
             check_points(package, start, points, quality, settings or ())

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -76,13 +77,22 @@ def run_points(
 
 
 def check_points(
-    program: Program, scene: Path, points: Sequence[Point], quality: str | None, settings: Sequence[str]
+    program: Program,
+    scene: Path,
+    points: Sequence[Point],
+    quality: str | None,
+    settings: Sequence[str],
+    vary: str = "",
 ) -> tuple[Path, str]:
-    """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs."""
+    """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs.
+
+    vary : what messages call the options of which the points are all combinations: none of them is another's scene.
+    """
     from porescale.common.schema.scene_file import find
     from porescale.common.schema.sections import load
 
     faults: dict[str, Fault] = {}  # by what they say: what is wrong with every point is said of the first
+    first: dict[bytes, Point] = {}
     for point in points:
         try:
             overrides = (*settings, *point.settings)
@@ -92,9 +102,34 @@ def check_points(
             for fault in error.faults:
                 place = f"{point.name}, {fault.file}" if fault.file else point.name
                 faults.setdefault(fault.line(), replace(fault, file=place))
+            continue
+        if vary and (same := first.setdefault(_digest(read, point), point)) is not point:
+            fault = _twice(same, point)
+            faults.setdefault(fault.line(), replace(fault, file=vary))
     if faults:
         raise InputError(list(faults.values()))
     return find(scene), read.name
+
+
+def _digest(scene: Any, point: Point) -> bytes:
+    """Of a scene, of the level of its ``point``, and of settings that it does not keep, as the name of a file it read.
+
+    Two such files may say the same.
+    """
+    from porescale.common.schema.scene_file import holds, parse_setting
+    from porescale.common.schema.sections import scene_as_dict
+
+    kept = scene_as_dict(scene)
+    lost = [text for text in point.settings if not holds(kept, parse_setting(text)[0])]
+    return sha256(repr((kept, point.quality, lost)).encode()).digest()
+
+
+def _twice(one: Point, other: Point) -> Fault:
+    """What is wrong with two points of one scene: the first value that they write in two ways."""
+    pairs = zip(one.settings, other.settings, strict=True)
+    before, again = next(((a, b) for a, b in pairs if a != b), (one.settings[0], other.settings[0]))
+    key, _, value = again.partition("=")
+    return Fault(key, value, f"is {before.partition('=')[2]}, which is given, too", repair="leave one out")
 
 
 def require_folder(

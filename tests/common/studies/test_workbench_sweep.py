@@ -157,6 +157,17 @@ def test_what_is_wrong_with_any_point_is_said_before_any_runs(tmp_path):
     )  # fmt: skip
 
 
+def test_two_ways_to_write_a_value_are_one_point(tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    points = varied(["decay.rate=2,120 1/min,3", "decay.start=1,4"])
+    with pytest.raises(InputError, match="is 2, which is given, too") as caught:
+        check_points(TOY, tmp_path, points, None, (), "--vary")
+    lines = [fault.line() for fault in caught.value.faults]
+    assert lines == ["--vary: decay.rate = '120 1/min': is 2, which is given, too; leave one out"]
+    check_points(TOY, tmp_path, points, None, ())  # rows of a table may say what they want
+    check_points(TOY, tmp_path, varied(["decay.rate=2,121 1/min"]), None, (), "--vary")
+
+
 def test_finished_points_are_left_alone_and_begun_ones_resume(tmp_path):
     points = varied(["decay.rate=1,2,3"])
     first = Machine({"rate=2": "interrupted", "rate=3": "unstable"})
