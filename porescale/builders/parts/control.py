@@ -18,7 +18,7 @@ class ControlPart(Part):
     def tables(self) -> dict[str, Row]:
         """control.csv: displacement since the start, forces of contacts and of the control.
 
-        Forces are means over the last step of the model.
+        Forces are means over the last step of the model, and so 0 at the start, of bodies that overlap there, too.
 
         NAME displacement x (m) : since the start; likewise y
         NAME displacement rotation (rad) : since the start
