@@ -90,16 +90,16 @@ class WaterPart(Part):
         require_step(flow.next_step, limits, RULES, layer.x, layer.acceleration, layer.density, now)
 
     def row(self) -> dict[str, float]:
-        """Columns of the water: position and energies.
+        """Columns of all fluid, a second one and air included: position and energies.
 
-        front (m) : right edge of the foremost particle of water
+        front (m) : right edge of the foremost particle
         highest water (m) : upper edge of the highest particle
         mean height (m) : of the centre of mass
         NAME (J/m) : kinetic, potential, compressive energy; with output.energy the budget of water/energy_budget.py
-        momentum x (kg/s) : of the water, per metre of depth
+        momentum x (kg/s) : of the fluid, per metre of depth
         fastest (m/s) : largest speed of a particle
         densest (kg/m3) : largest density of a particle
-        mass (kg/m) : of the water, per metre of depth
+        mass (kg/m) : of the fluid, per metre of depth
         particles outside () : particles that have left the tank
         stops at walls () : how often a particle was stopped at a wall, since the start
         """
