@@ -25,7 +25,7 @@ from continuum_sph.builders.reports.soil_report import (
 from continuum_sph.builders.reports.time_report import MOVING_SOIL, OPENING, PORE_WATER, report_run, step_seconds
 from continuum_sph.builders.reports.water_report import step_limits, wall_count, water_report
 from continuum_sph.scene.bounds import WHOLE
-from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.sections import CALM_MACH, Scene
 from continuum_sph.seepage.step import SHARE
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import RATIO
@@ -83,6 +83,7 @@ def seepage_report(scene: Scene) -> Report:
             f"soil.water_table lies over all ground and water, {table - section.height:.3g} m over the highest ground: "
             "pores are full to their surface; water above it is that of [[water.column]] or [[reservoir]]"
         )
+    warn_of_high_pores(scene, out)
     buoyant = section.density - (1.0 - section.porosity) * state.density
     pressure = 0.5 * buoyant * scene.gravity * section.height * (1.0 + material_of(section).rest)
     report_softening(out, section, soil_law(scene), pressure)
@@ -106,6 +107,18 @@ def seepage_report(scene: Scene) -> Report:
     if scene.face:
         faces(scene, out, soil)
     return out
+
+
+def warn_of_high_pores(scene: Scene, out: Report) -> None:
+    """Warn of pores full so far above all water in the open that water at their foot is compressed by over 1 %."""
+    full = scene.pores_full_to
+    percent = 100.0 * scene.gravity * full / scene.sound_speed**2
+    if full > scene.head and percent > 1.0:
+        out.warn(
+            f"pores are full to {full:.3g} m, above all water in the open: water at their foot is compressed by "
+            f"{percent:.2g} %; water.sound_speed = {math.ceil(CALM_MACH * math.sqrt(2.0 * scene.gravity * full))} "
+            "makes it 0.5 %"
+        )
 
 
 class Counts(NamedTuple):

@@ -46,3 +46,12 @@ def test_image_walls_are_warned_of_and_walls_that_carry_pressure_are_not():
     for kind, said in (("images", 1), ("pressure", 0)):
         whole = validate(Scene, given | {"tank": given["tank"] | {"wall_particles": kind}})
         assert sum("image walls" in text for text in report(whole).warnings) == said
+
+
+@pytest.mark.parametrize(("pond", "said"), [(0.3, 1), (0.7, 0)])
+def test_pores_full_to_far_above_the_open_water_are_warned_of(pond, said):
+    bank = {"saturated": True, "held": True, "body": [{"outline": [[0, 0], [0.5, 0], [0.5, 1], [0, 1]]}]}
+    given = scene_as_dict(trials.column_scene(0.05, tank=(1.0, 1.0), column=(0.5, pond)))
+    given["water"] = {"column": [{"left": 0.5, "width": 0.5, "height": pond}]}
+    found = report(validate(Scene, {**given, "soil": bank})).warnings
+    assert sum("pores are full to 1 m" in text for text in found) == said
