@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from porescale.common.api.hooks import EveryHook, ForceFunction, ForceHook, Hook, SampleFunction, when
+from porescale.common.compiled import jit
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.ranges import is_number
 from porescale.common.duration.threads import Threads
@@ -42,6 +43,7 @@ class BaseSimulation(ABC):
     building: tuple[Moment, Moment] | None = None
     parts: list[Part]
     hooks: Mapping[str, Hook] = MappingProxyType({})
+    _threads: Threads | None = None
 
     @property
     @abstractmethod
@@ -270,7 +272,7 @@ class BaseSimulation(ABC):
                 if it.schedule.due(self.step, self.time) if scheduled else it.last_step != self.step:
                     it.sample(scheduled=scheduled)
 
-        with polite_stop() as stop, Threads() as threads:
+        with polite_stop() as stop, self._as_many_as_pay() as threads:
             if self.step == 0 and any(it.last_step < 0 for it in samplers):
                 sample(scheduled=True)
             while not ended():
@@ -288,6 +290,12 @@ class BaseSimulation(ABC):
                     raise KeyboardInterrupt(f"{where}; the simulation can be gone on with")
         self.check()
         sample(scheduled=False)
+
+    def _as_many_as_pay(self) -> Threads:
+        """Threads of the kernels: what earlier pieces of the run have measured counts while as many are allowed."""
+        if self._threads is None or self._threads.most != jit.threads():
+            self._threads = Threads()
+        return self._threads
 
 
 def absent(what: str, lacks: str, repair: str = "") -> InputError:

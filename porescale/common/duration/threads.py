@@ -30,6 +30,7 @@ GAIN = 1.05
 class Threads:
     """Context in which kernels have as many threads as are fastest, at most as many as now; afterwards as many as now.
 
+    It can be entered again, for the next piece of a run, and goes on with what it has measured.
     most : threads (default: as many as now);  take : sets their number.
     """
 
@@ -43,6 +44,7 @@ class Threads:
         self.rates: list[float] | None = None  # of the number taken, of the other one, of the first again
 
     def __enter__(self) -> "Threads":
+        self.take(self.counts[self._now()])
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -87,7 +89,11 @@ class Threads:
             self._judge(*self.rates)
             self.rates = None
         else:
-            self.take(self.counts[self.other if len(self.rates) == 1 else self.at])
+            self.take(self.counts[self._now()])
+
+    def _now(self) -> int:
+        """Which number is timed now: in the middle of a trial the other one."""
+        return self.other if self.rates is not None and len(self.rates) == 1 else self.at
 
     def _next(self) -> int:
         """Which number is tried now: half of that taken, one, twice as many, and so on."""

@@ -11,7 +11,9 @@ import continuum_sph
 import porescale
 from porescale.cli.main import commands
 from porescale.common.cli.application import main
+from porescale.common.compiled import jit
 from porescale.common.core.errors import InputError, Unstable
+from porescale.common.duration.threads import Threads
 from porescale.common.record.model import Model
 from tests.common.api.small import build, scene_of
 from tests.fingerprints.digest import fingerprint
@@ -42,6 +44,17 @@ def test_pieces_are_the_whole_to_the_bit(kind):
     assert whole.time == pytest.approx(end, abs=whole.step_seconds)
     assert fingerprint(whole.state()) == fingerprint(pieces.state())
     assert fingerprint(build(scene).run(until=0.9 * end).state()) != fingerprint(pieces.state())  # it can tell
+
+
+def test_pieces_share_what_is_known_of_threads_while_as_many_are_allowed(monkeypatch):
+    made = []
+    place = "porescale.common.api.simulation.Threads"
+    monkeypatch.setattr(place, lambda: made.append(Threads(jit.threads(), lambda _: None)) or made[-1])
+    one = build(dry())
+    for allowed, kinds in ((2, 1), (2, 1), (3, 2)):
+        monkeypatch.setattr(jit, "threads", lambda allowed=allowed: allowed)
+        one.run(steps=1)
+        assert len(made) == kinds
 
 
 def test_a_run_ends_where_it_is_said():

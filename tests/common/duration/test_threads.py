@@ -109,3 +109,13 @@ def test_afterwards_kernels_have_what_they_had():
     with Threads() as threads:
         threads.take(1)
     assert jit.threads() == before
+
+
+def test_pieces_of_a_run_go_on_with_what_is_measured():
+    machine = Machine(2, busy)
+    for _ in range(100):  # each shorter than what is timed
+        with machine.threads:
+            machine.run(0.02)
+        assert machine.taken == 2
+    with machine.threads:
+        assert machine.taken == 1
