@@ -89,7 +89,7 @@ def check_points(
     vary : what messages call the options of which the points are all combinations: none of them is another's scene.
     """
     from porescale.common.schema.scene_file import find
-    from porescale.common.schema.sections import load, scene_as_dict
+    from porescale.common.schema.sections import load
 
     faults: dict[str, Fault] = {}  # by what they say: what is wrong with every point is said of the first
     first: dict[bytes, Point] = {}
@@ -103,12 +103,25 @@ def check_points(
                 place = f"{point.name}, {fault.file}" if fault.file else point.name
                 faults.setdefault(fault.line(), replace(fault, file=place))
             continue
-        if vary and (same := first.setdefault(sha256(repr(scene_as_dict(read)).encode()).digest(), point)) is not point:
+        if vary and (same := first.setdefault(_digest(read, point), point)) is not point:
             fault = _twice(same, point)
             faults.setdefault(fault.line(), replace(fault, file=vary))
     if faults:
         raise InputError(list(faults.values()))
     return find(scene), read.name
+
+
+def _digest(scene: Any, point: Point) -> bytes:
+    """Of a scene, of the level of its ``point``, and of settings that it does not keep, as the name of a file it read.
+
+    Two such files may say the same.
+    """
+    from porescale.common.schema.scene_file import holds, parse_setting
+    from porescale.common.schema.sections import scene_as_dict
+
+    kept = scene_as_dict(scene)
+    lost = [text for text in point.settings if not holds(kept, parse_setting(text)[0])]
+    return sha256(repr((kept, point.quality, lost)).encode()).digest()
 
 
 def _twice(one: Point, other: Point) -> Fault:
