@@ -125,7 +125,8 @@ class Grains(State):
         count: int = 1,
         drag: float = 0.0,
     ) -> None:
-        """``count`` contact steps of ``dt`` (s) with the external force (n, 2) N/m and torque (n,) N m/m (None: 0).
+        """``count`` contact steps of ``dt`` (s), none if 0, with the external force (n, 2) N/m and torque (n,) N m/m
+        (None: 0).
 
         drag (1/s): background damping, for settling only.  Raises InputError at a step, count, drag or load that is no
         such number (of loads: when their array is first given), and Unstable when the list must be rebuilt and a
@@ -135,6 +136,8 @@ class Grains(State):
         seen, force, torque = self.checked
         if (dt, count, drag, type(count)) != seen or external_force is not force or external_torque is not torque:
             check_step(self, (dt, count, drag, type(count)), external_force, external_torque)
+        if count == 0:
+            return
         for own, load in ((self.external_force, external_force), (self.external_torque, external_torque)):
             if load is None:
                 own.fill(0.0)

@@ -8,6 +8,7 @@ import pytest
 import porescale as ps
 from porescale.builders.initial.frames import placed_frames
 from porescale.common.core.errors import InputError
+from tests.reference.scenes import dry
 
 LEFT, RIGHT, Y = 5e-3, 25e-3, 10e-3  # m, ends of the door and its height
 G, DENSITY, RADIUS = 9.81, 2500.0, 1e-3
@@ -84,3 +85,21 @@ def test_a_pivot_amid_the_points_is_taken_as_before():
     bodies = ps.build(scene([12e-3, Y])).grains.steering.clumps
     (placed,) = placed_frames(scene([15e-3, Y]))
     assert bodies.inertia[0] == placed.frame.mass_properties().inertia
+
+
+def test_a_door_that_is_turned_by_its_angle_hangs_from_any_point_and_one_that_a_moment_turns_does_not():
+    turned = ps.build(scene(HINGES[0], rotation={"displacement": {"amplitude": 0.01, "frequency": 10.0}}))
+    turned.advance(100)
+    angle = 0.01 * math.sin(2 * math.pi * 10.0 * turned.time)
+    assert taken(turned)["displacement rotation (rad)"] == pytest.approx(angle, rel=1e-9)
+    with pytest.raises(InputError, match="must lie amid the points of its segments, as a force moves it"):
+        ps.build(scene(HINGES[0], rotation={"force": 1e-3}))  # the check that must fail
+
+
+@pytest.mark.parametrize(("way", "free"), [("velocity", False), ("displacement", False), ("force", True)])
+def test_a_held_polygon_is_no_grain_unless_a_force_moves_it(way, free):
+    corners = [[4e-3, 4e-3], [6e-3, 4e-3], [6e-3, 6e-3], [4e-3, 6e-3]]
+    control = {"polygon": 0, **{axis: {way: 0.0} for axis in ("x", "y", "rotation")}}
+    square = {"corners": corners, "thickness": 1e-4, "held": True}
+    found = placed_frames(dry(grains={"density": DENSITY}, polygon=[square], control=[control]))
+    assert [it.free for it in found] == [free]

@@ -108,6 +108,17 @@ def test_walls_are_taken_up_again_to_the_bit():
         ({"wall": [{"x": 0, "y": 0, "normal": [0, 0]}]}, "wall[0].normal = '(0, 0)': has no length"),
         ({"wall": [{"x": 0, "y": 0, "normal": [0, 1], "stress": 1, "fastest": 1}]}, "wall[0].length: is needed"),
         ({"wall": [{"x": 0, "y": 0, "normal": [0, 1], "name": "top"}]}, "wall[0].name = 'top': is taken"),
+        (
+            {"gate": {"x": 0.005}, "wall": [{"x": 0, "y": 0, "normal": [0, 1], "name": "gate"}]},
+            "wall[0].name = 'gate': is taken",
+        ),
+        (
+            {
+                "rectangle": [{"lower": [0, 0], "upper": [0.001, 0.001]}],
+                "wall": [{"x": 0, "y": 0, "normal": [0, 1], "name": "rectangle 0"}],
+            },
+            "wall[0].name = 'rectangle 0': is taken",
+        ),
         ({"wall": [{"x": 0.002, "y": 0, "normal": [1, 0]}]}, "grains.grain[0] = '(0.002, 0.002)': stands across or"),
         (
             {"wall": [{"x": 0, "y": 0, "normal": [0, 1], "velocity_x": "1 s"}]},

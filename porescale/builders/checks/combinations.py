@@ -106,10 +106,11 @@ def check_walls(scene: Scene) -> list[Fault]:
             problem, repair = "is felt by a fluid alone, and there is none", f"write velocity = {along}, for grains"
             faults.append(Fault(f"domain.{name}.speed", side.speed, problem, "m/s", repair=repair))
     names = names_of(scene.wall, "wall")
+    columns = [*SIDES, *(["gate"] if scene.gate else []), *(f"rectangle {k}" for k in range(len(scene.rectangle)))]
     faults += [
         Fault(f"wall[{k}].name", name, "is taken", repair="give each its own")
         for k, name in enumerate(names)
-        if name in SIDES or name in names[:k]
+        if name in columns or name in names[:k]
     ]
     return faults
 

@@ -24,7 +24,7 @@ from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.dem.motion.control import Control, Moved
+from porescale.dem.motion.control import Control, Moved, Pushed
 from porescale.dem.motion.drivers import Clump as ClumpNumber
 from porescale.dem.prepare.merge import joined
 from porescale.scene.bodies.segments import Container, PolygonBody, SegmentBody
@@ -58,7 +58,12 @@ class Placed:
     @property
     def free(self) -> bool:
         """Whether forces move it: it is one of the grains."""
-        return self.kind not in ("container", "plate") and not all(isinstance(it, Moved) for it in self.prescribed)
+        return self.kind not in ("container", "plate") and not _without_force(self.prescribed)
+
+
+def _without_force(motion: Prescribed) -> bool:
+    """Whether each component has a velocity or a displacement, so that no force moves the body."""
+    return all(it is not None and not isinstance(it, Pushed) for it in motion)
 
 
 def placed_frames(scene: Scene) -> list[Placed]:
@@ -157,7 +162,7 @@ def _container(plan: MaterialPlan, section: Container, more: dict[str, Any]) -> 
     if section.pivot is None:
         return frame
     own = frame.mass_properties()
-    driven, arm = all(isinstance(it, Moved) for it in _prescribed(section)), np.array(frame.corners) - section.pivot
+    driven, arm = _without_force(_prescribed(section)), np.array(frame.corners) - section.pivot
     if not driven and shares(np.ones(len(arm)), arm, float(np.abs(arm).max())) is None:
         problem, repair = "must lie amid the points of its segments, as a force moves it", "take a point between them"
         raise InputError(Fault("frame.pivot", None, problem, "m", repair=repair))

@@ -17,6 +17,7 @@ from porescale.dem.bodies.bonding import bond, segments_now
 from porescale.dem.bodies.rigid import as_bodies
 from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.grains import Grains
+from porescale.dem.measures.region import Region
 from porescale.dem.motion.drivers import Clump as ClumpNumber
 from porescale.dem.sanity import WORST_OVERLAP
 from porescale.output.frame_clouds import BONDS
@@ -171,11 +172,12 @@ class BondsPart(Part):
         return found
 
     def _within(self, bodies: list[Body], section: Bonds) -> list[Body]:
-        """Those with their centre in the rectangle of a section."""
+        """Those with their centre in the rectangle of a section, or an image of it through periodic sides."""
         if section.within is None:
             return bodies
         left, bottom, right, top = section.within
-        at, clumps = as_bodies(self.grains).position, self.bodies.clumps
+        rectangle, clumps = Region((left, bottom), (right, top)), self.bodies.clumps
+        at = rectangle.near(as_bodies(self.grains).position, self.grains.period)
 
         def inside(body: Body) -> bool:
             """Whether a body's centre lies there; a clump's is its first disc's."""

@@ -81,7 +81,7 @@ def _stiffness_scale(overlap, radius, law):
 
 @history_scaling.of(HertzKernel)
 def _history_scaling(overlap, closing, dt, law):
-    """Springs shrink as the contact does while it is unloaded, never grow."""
+    """Springs shrink as the contact grows, so that their force stays; while it is unloaded they keep their length."""
     before = max(overlap - closing * dt, 0.0)
     return np.sqrt(min(before / overlap, 1.0))
 

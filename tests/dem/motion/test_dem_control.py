@@ -314,3 +314,18 @@ def test_rows_of_a_table_follow_each_other():
     rows, points = schedule_rows([Table([0.0], [1.0]), Table([1.0, 2.0], [3.0, 4.0])])
     assert rows[:, [schedule.FIRST, schedule.LAST]].tolist() == [[0.0, 1.0], [1.0, 3.0]]
     assert len(points) == 3
+
+
+def test_a_call_of_no_steps_changes_nothing_of_what_holders_and_controls_bore():
+    grains, weight = apart(2), np.array([[0.0, -2.0], [0.0, 0.0]])
+    grains.hold(0)
+    grains.steering.control(1, x=Moved(0.01))
+    grains.steering.watch(1)
+    grains.step(DT, weight, count=4)
+    held, (line,) = grains.withheld.copy(), grains.steering.record()
+    grains.step(DT, weight, count=0)
+    assert held[0].tolist() == [0.0, -2.0, 0.0]
+    np.testing.assert_array_equal(grains.withheld, held)
+    assert grains.steering.record() == [line]
+    grains.step(DT, weight, count=1)  # the check that must fail: a step changes what the control gives
+    assert grains.steering.record() != [line]

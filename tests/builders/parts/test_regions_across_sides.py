@@ -54,3 +54,17 @@ def test_a_grain_that_has_gone_round_a_periodic_box_presses_on_its_floor_where_i
     assert moment() == pytest.approx(first, rel=1e-9)  # its place is good to eps times three periods
     grains.discs.position[0, 0] += 1e-5
     assert moment() != pytest.approx(first, rel=1e-3)  # the check that must fail: a hundredth of a diameter is seen
+
+
+@pytest.mark.filterwarnings("ignore:.*makes no bond")  # as the last is to
+@pytest.mark.parametrize(("gone", "bonds"), [(0.0, 1.0), (-WIDTH, 1.0), (2.0 * WIDTH, 1.0), (0.5 * WIDTH, 0.0)])
+def test_bodies_that_have_gone_round_a_periodic_box_are_bonded_where_they_are_seen(gone: float, bonds: float) -> None:
+    pair = [grain(0.004, 0.004), grain(0.004999, 0.004)]
+    scene: dict[str, Any] = {**BOX, "grains": {"density": 2500, "overlap": 0.01, "grain": pair}, "time__end": 1.0}
+    seconds = build(dry(**scene)).step_seconds
+    simulation = build(dry(**scene, bonds=[{"at": seconds, "within": [0.003, 0.0, 0.006, HEIGHT]}]))
+    assert simulation.grains
+    simulation.grains.discs.position[:, 0] += gone
+    simulation.grains.refresh(anew=True)
+    simulation.advance(2)
+    assert simulation.series()["bonds ()"] == bonds
