@@ -2,8 +2,9 @@
 
 Steps of a small scene are loops of tenths of a millisecond, at the end of each of which all threads wait for the last.
 Where another program has one of the cores that one is late by a turn of the system, milliseconds: the main job with two
-threads then does a third of the steps that it does with one.  On a quiet machine two are faster.  So it is measured,
-again and again, on the run's own steps: results do not depend on the number of threads, in any bit.
+threads did 0.7 of the steps that it did with one (measured beside one endless loop).  On a quiet machine two are
+faster.  So it is measured, again and again, on the run's own steps: results do not depend on the number of threads, in
+any bit.
 
 A number is timed, then half as many, one or twice as many in turns, then the first again, so that a machine that gets
 busier or quieter on the way changes nothing.  Where nothing was faster the next is tried after twice the time.

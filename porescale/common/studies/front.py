@@ -29,6 +29,8 @@ WARM_UP = 3
 """Steps before a pace is taken: kernels compile, steps in place have two kinds."""
 SECONDS, LEAST = 2.0, 5
 """A pace is the mean of blocks over this long, at least so many."""
+TRIALS = 8
+"""Of numbers of threads at most, before a pace is taken: each is a second, and loads that come and go never settle."""
 GENTLE = 0.95
 """Share of a budget that is planned with."""
 
@@ -261,7 +263,7 @@ def pace_of(model: Any) -> tuple[float, float]:
         model.advance(1)
     with Threads() as threads:
         count = 1
-        while not threads.settled:
+        while not threads.settled and threads.trials < TRIALS:
             count = _block(threads.advance(model, count) / count)
         first, before, busy = model.step, time.perf_counter(), time.process_time()
         blocks, spent = 0, 0.0
