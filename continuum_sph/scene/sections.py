@@ -131,13 +131,13 @@ class Scene(SceneBase):
             if self.soil is None:
                 faults.append(Fault("pile", "given", "needs soil beside it", repair="add [soil]"))
         if not self.has_water and (self.soil is None or self.soil.suction is None):  # which refuses them itself
-            asked = {"output.energy": self.output.energy, "probe": bool(self.probe), "level": bool(self.level)}
+            of_water = (
+                ("output.energy", True, self.output.energy),
+                ("probe", "given", self.probe),
+                ("level", "given", self.level),
+            )
             problem, repair = "is of water, of which there is none", "leave it out"
-            faults += [
-                Fault(key, True if key == "output.energy" else "given", problem, repair=repair)
-                for key in asked
-                if asked[key]
-            ]
+            faults += [Fault(key, value, problem, repair=repair) for key, value, asked in of_water if asked]
         if self.reservoir and self.soil is None:
             faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
         if self.air is not None and (self.soil is None or not self.has_water):

@@ -58,7 +58,7 @@ def measure_window(scene: Scene, grains: Cloud, *, resolved: bool = False) -> Me
     assert scene.fluid
     window = scene.permeability.window or (scene.grains.packing if scene.grains else None)
     assert window  # the scene has made sure
-    scales, (periodic_x, periodic_y) = fluid_scales(scene.fluid), scene.domain.periodic
+    scales = fluid_scales(scene.fluid)
     spacing = scene.permeability.spacing or scales.spacing
     lower = window.left, window.bottom
     upper = lower[0] + window.width, lower[1] + window.height
@@ -73,9 +73,14 @@ def measure_window(scene: Scene, grains: Cloud, *, resolved: bool = False) -> Me
         "relaxation_time": scales.relaxation_time, "laws": collision_options(scene.fluid),
         "solid_laws": solid_options(scene.fluid),
     }  # fmt: skip
-    whole = periodic_x and window.width > box[0] - near, periodic_y and window.height > box[1] - near
-    period = [length if scene.domain.periodic[k] and not whole[k] else 0.0 for k, length in enumerate(box)]
-    position, radius = with_images(grains.position, grains.data["hydraulic_radius"], period)
+    position, radius, whole = with_images(
+        grains.position,
+        grains.data["hydraulic_radius"],
+        box,
+        scene.domain.periodic,
+        (window.width, window.height),
+        near,
+    )
     return measure(
         position, radius, lower, upper, spacing, direction=scene.permeability.direction, periodic=whole, walls=walls,
         **as_run,

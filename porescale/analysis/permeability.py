@@ -114,17 +114,22 @@ def standing(at: Floats, radius: Floats, extent: Sequence[float], whole: Sequenc
     return inside
 
 
-def with_images(position: Reals, radius: Reals, period: Sequence[float]) -> tuple[Floats, Floats]:
-    """Discs and their images one ``period`` to either side: centres (m, 2) and radii (m,), the discs first.
+def with_images(
+    position: Reals, radius: Reals, box: Sequence[float], periodic: Sequence[bool], extent: Sequence[float], near: float
+) -> tuple[Floats, Floats, tuple[bool, bool]]:
+    """Discs and their images through the periodic sides of a ``box``, as a window in it has them: centres (m, 2) and
+    radii (m,), the discs first; and along which axes the window is a whole period, where no image is wanted.
 
-    period : of a box, along x and y, in the unit of ``position`` (n, 2); 0 where no image is wanted.
+    extent : lengths of the window, along x and y as those of the box, in the unit of ``position`` (n, 2);  near : by
+    how much less than the box is as long.
     """
     at, size = np.asarray(position, float), np.asarray(radius, float)
-    for axis, length in enumerate(period):
-        if length:
+    whole = [periodic[axis] and extent[axis] > box[axis] - near for axis in range(2)]
+    for axis, length in enumerate(box):
+        if periodic[axis] and not whole[axis]:
             shift = length * np.eye(2)[axis]
             at, size = np.concatenate([at, at - shift, at + shift]), np.tile(size, 3)
-    return at, size
+    return at, size, (whole[0], whole[1])
 
 
 def measure(

@@ -104,8 +104,7 @@ def beside_the_bed(scene: Scene) -> list[str]:
     low = np.array((window.left, window.bottom))
     size = np.array((window.width, window.height))
     box, order = (scene.domain.width, scene.domain.height), [0, 1] if scene.permeability.direction == "x" else [1, 0]
-    whole = [scene.domain.periodic[k] and size[k] >= box[k] * (1.0 - SAME) for k in range(2)]
-    x, r = with_images(x, r, [box[k] if scene.domain.periodic[k] and not whole[k] else 0.0 for k in range(2)])
+    x, r, whole = with_images(x, r, box, scene.domain.periodic, size.tolist(), SAME * max(box))
     diameters = 2.0 * r[standing((x - low)[:, order], r, size[order].tolist(), [whole[k] for k in order])]
     if packing is not None:
         corner, wide = np.array((packing.left, packing.bottom)), np.array((packing.width, packing.height))
