@@ -27,7 +27,7 @@ def column(viscosity: float, across: int, end: float) -> Simulation:
             "push": "face",
             "column": [{"width": WIDTH, "height": HEIGHT}],
         },
-        "numerics": {"spacing": WIDTH / across, "artificial_viscosity": 0.02},
+        "numerics": {"spacing": WIDTH / across},
         "time": {"end": end},
         "output": {"snapshot_interval": end, "series_interval": end},
     }

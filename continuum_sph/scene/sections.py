@@ -89,18 +89,6 @@ class Scene(SceneBase):
         return float((2.0 * self.gravity * self.head) ** 0.5)
 
     @property
-    def sound_speed(self) -> float:
-        """c0, m/s: as given, or ten times the fall speed."""
-        given = self.water.sound_speed
-        return given if given is not None else CALM_MACH * self.fall_speed
-
-    @property
-    def noise_speed(self) -> float:
-        """Speed of sound waves whose pressure is the noise floor, m/s."""
-        pressure = 0.5 * self.numerics.noise_floor * self.fall_speed**2  # over the density of the water
-        return pressure / self.sound_speed if pressure > 0.0 else 0.0
-
-    @property
     def dry(self) -> bool:
         """Whether there is soil and no water, now or later."""
         return self.soil is not None and not self.has_water

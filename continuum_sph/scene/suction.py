@@ -40,7 +40,7 @@ class SuctionSection(Section):
                                f"<= {scene.tank.height:g}"))  # fmt: skip
         if scene.gravity == 0.0:
             found.append(Fault("gravity", 0.0, "gives suction in metres of water no pressure", "m/s^2", "> 0"))
-        elif scene.sound_speed == 0.0:
+        elif scene.water.sound_speed is None and scene.soil.held and scene.head == 0.0:
             found.append(Fault("water.sound_speed", None, "is needed when no reservoir has a level to take it from"))
         for name, there, instead in (
             ("water.column", scene.water.column, "use [[reservoir]] for open water"),

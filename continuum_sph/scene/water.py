@@ -47,7 +47,10 @@ class WaterSection(Section):
 
     density: float = quantity("kg/m^3", 1000.0, ge=1e-2, le=1e5, help="density under the pressure of the air")
     viscosity: float = quantity("Pa s", 1.002e-3, ge=0, le=1e9, help="viscosity")
-    sound_speed: float | None = quantity("m/s", None, ge=1e-3, le=1e6, help="speed of sound, at least 10 sqrt(2 g H)")
+    sound_speed: float | None = quantity(
+        "m/s", None, ge=1e-3, le=1e6,
+        help="speed of sound; left out 10 sqrt(2 g H), and with soil that moves K_w of at least ten times its n M",
+    )  # fmt: skip
     exponent: float = quantity("", 7.0, ge=1.5, le=20, help="exponent of the equation of state")
     pressure: Literal["hydrostatic", "released", "none"] = pydantic.Field(
         default="hydrostatic", description="pressure at the start"

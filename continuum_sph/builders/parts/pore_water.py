@@ -7,10 +7,10 @@ import numpy as np
 from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
 from continuum_sph.builders.parts.faces import pressure_face
 from continuum_sph.builders.parts.held_soil import held_ground
-from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
 from continuum_sph.builders.parts.soil import porous_section, soil_flow, soil_section
+from continuum_sph.builders.parts.stiffness import largest_modulus
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
@@ -253,11 +253,3 @@ def seepage_flow(scene: Scene, *, hasty: bool = False) -> Seepage:
         both.supply.keep(0.0)
     both.start()
     return both
-
-
-def largest_modulus(scene: Scene) -> float:
-    """Modulus (Pa) of a column of the scene's soil under the largest mean stress that its dry weight makes."""
-    section = soil_section(scene)
-    material = material_of(section)
-    pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
-    return material.column_modulus * material.stiffness_at(pressure) / material.stiffness

@@ -6,8 +6,8 @@ import numpy as np
 
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.parts.material import material_of
-from continuum_sph.builders.parts.pore_water import largest_modulus
 from continuum_sph.builders.parts.soil import SoilPart, porous_section, soil_flow, soil_section
+from continuum_sph.builders.parts.stiffness import largest_modulus, sound_speed
 from continuum_sph.builders.sanity import Now, Range, require_finite, require_within
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.suction import SuctionSection
@@ -52,7 +52,7 @@ def retention_of(scene: Scene) -> VanGenuchten:
     section, water = suction_section(scene), scene.water
     return VanGenuchten(
         section.alpha, section.n, section.residual, water.density * scene.gravity,
-        water.density * scene.sound_speed**2,
+        water.density * sound_speed(scene) ** 2,
     )  # fmt: skip
 
 

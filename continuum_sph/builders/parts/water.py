@@ -10,6 +10,7 @@ from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.initial_pressure import released_pressure
 from continuum_sph.builders.parts.inclusion import InclusionPart, fill_inclusion, inclusion_fluid
 from continuum_sph.builders.parts.instruments import WaterInstruments
+from continuum_sph.builders.parts.stiffness import noise_speed, sound_speed
 from continuum_sph.builders.sanity import (
     JumpCheck,
     Now,
@@ -191,7 +192,14 @@ def assemble(scene: Scene) -> Assembly:
 
 def water_state(scene: Scene) -> Tait:
     """The equation of state of a scene's water."""
-    return Tait(scene.water.density, scene.sound_speed, scene.water.exponent)
+    return Tait(scene.water.density, sound_speed(scene), scene.water.exponent)
+
+
+def cuts_tension(scene: Scene) -> bool:
+    """Whether negative pressures are cut: as given; else beside ground, over which water would cling, but not in air,
+    where water that splashes would lose volume."""
+    given = scene.numerics.tension
+    return given == "cut" if given is not None else scene.soil is not None and scene.air is None
 
 
 def water_law(scene: Scene) -> Law:
@@ -207,7 +215,7 @@ def water_law(scene: Scene) -> Law:
         softening=numerics.softening,
         diffusion=numerics.density_diffusion,
         noise=NAMES.index(numerics.diffusion_of),
-        noise_speed=scene.noise_speed,
+        noise_speed=noise_speed(scene),
         xsph=numerics.xsph,
         shifting=numerics.shifting,
         corrected=numerics.gradient == "corrected",
@@ -216,7 +224,7 @@ def water_law(scene: Scene) -> Law:
         sticky=scene.tank.walls != "slip",
         images=scene.tank.wall_particles == "images",
         tension=second.surface_tension if second else 0.0,
-        cut=numerics.tension == "cut",
+        cut=cuts_tension(scene),
         courant=numerics.courant,
     )
 

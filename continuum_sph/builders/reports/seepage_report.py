@@ -8,9 +8,10 @@ import numpy as np
 from continuum_sph.builders.parts.air import air_report, dry_pores
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.material import material_of
-from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, water_counts
+from continuum_sph.builders.parts.pore_water import pore_law, water_counts
 from continuum_sph.builders.parts.sheet_pile import LEAST, LEAST_BARE, OPEN, given_heads, ground_at, resolved
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
+from continuum_sph.builders.parts.stiffness import NATURAL, STIFF, largest_modulus, sound_speed
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
 from continuum_sph.builders.reports.soil_report import (
     SNAPSHOT,
@@ -45,7 +46,6 @@ STANDS = 1.35  # spacings, with which it does for two million
 STEADY_AFTER = 2.0  # of L²/D, in which pressures spread: exp(-π² t/4), of a face on one side, is 0.7 % then
 BROAD, APART = 6.0, 3.0  # spacings of open water in a strip that keeps its level, and from it to the ground
 PIECES = 100  # of a run, to add up what passes a face whose head rises
-STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
 
 
 def seepage_report(scene: Scene) -> Report:
@@ -112,7 +112,7 @@ def seepage_report(scene: Scene) -> Report:
 def warn_of_high_pores(scene: Scene, out: Report) -> None:
     """Warn of pores full so far above all water in the open that water at their foot is compressed by over 1 %."""
     full = scene.pores_full_to
-    percent = 100.0 * scene.gravity * full / scene.sound_speed**2
+    percent = 100.0 * scene.gravity * full / sound_speed(scene) ** 2
     if full > scene.head and percent > 1.0:
         out.warn(
             f"pores are full to {full:.3g} m, above all water in the open: water at their foot is compressed by "
@@ -179,11 +179,11 @@ def report_stiffness(out: Report, stiff: float, modulus: float, density: float) 
     """
     ratio = stiff / modulus
     out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
-    if ratio < STIFF:
-        speed = (STIFF * modulus / density) ** 0.5
+    if ratio < STIFF * (1.0 - WHOLE) and stiff < NATURAL * (1.0 - WHOLE):
+        speed = (min(STIFF * modulus, NATURAL) / density) ** 0.5
         out.warn(
             f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.0f} %; "
-            f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
+            f"raise water.sound_speed to {speed:.4g} m/s, leave it out or lower soil.stiffness"
         )
 
 

@@ -2,8 +2,8 @@
 
 import math
 
-from continuum_sph.builders.parts.pore_water import largest_modulus
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles
+from continuum_sph.builders.parts.stiffness import largest_modulus
 from continuum_sph.builders.parts.suction import require_filled, retention_of, suction_section
 from continuum_sph.builders.reports.seepage_report import report_stiffness
 from continuum_sph.builders.reports.soil_report import soil_report

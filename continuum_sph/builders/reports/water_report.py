@@ -103,7 +103,7 @@ def _warn(scene: Scene, mach: float, out: Report) -> None:
         raise InputError(
             Fault(
                 "water.sound_speed",
-                scene.sound_speed,
+                scene.water.sound_speed,
                 f"makes the fall of the water Mach {mach:.2g}",
                 "m/s",
                 f">= {scene.fall_speed / MACH_WARNED:.4g}",

@@ -13,3 +13,4 @@ from . import saturated_box as saturated_box
 from . import setups as setups
 from . import sheet_pile as sheet_pile
 from . import wet_slopes as wet_slopes
+from . import wetting as wetting

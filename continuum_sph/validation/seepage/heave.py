@@ -29,7 +29,6 @@ WATCHED = 4.0
 """Seconds after WAIT for which ground under a head that is held is watched, about as long as one that rises `slowly`
 takes from there to the onset.  Judged once, after 2 s, it stands up to heads that are 2 % higher."""
 BARELY = 0.01  # i_c s, by which a head that is held rises all the same
-STIFF = 10.0  # K_w/(n M) of the water: what soil squeezes out is not stored
 
 
 @dataclass(frozen=True)
@@ -109,7 +108,6 @@ class Heave:
             "tank": {"width": width, "height": (round(highest / spacing) + 4) * spacing, "lid": False},
             "water": {
                 "density": WATER,
-                "sound_speed": (STIFF * self.porosity * self.modulus / WATER) ** 0.5,
                 "column": [{"width": width, "height": level}],
             },
             "soil": {
@@ -138,7 +136,7 @@ class Heave:
                     "level": level,
                 },
             ],
-            "numerics": {"spacing": spacing, "tension": "cut", "artificial_viscosity": 0.1},
+            "numerics": {"spacing": spacing},
             "time": {"end": self.end},
             "output": {"snapshot_interval": 0.1, "series_interval": 0.02},
         }  # fmt: skip

@@ -31,8 +31,8 @@ class Levee:
 
     rows : particles over its height;  height, crest : m;  river, land : run of its slopes over the height;  pool,
     plain : breadth of river and land beside it, m;  stiffness : E, Pa;  ratio : K_w/(n M) of the water;  permeability
-    m/s;  friction : degrees;  cohesion : Pa;  low, high : levels of the river over the height;  viscosity : artificial,
-    α of the water;  diffusion : χ of the soil, left out: as of any ground (`soil.steadying`);  end : s.
+    m/s;  friction : degrees;  cohesion : Pa;  low, high : levels of the river over the height;  diffusion : χ of the
+    soil, left out: as of any ground (`soil.steadying`);  end : s.
     """
 
     rows: int = 12
@@ -49,7 +49,6 @@ class Levee:
     cohesion: float = 0.0
     low: float = 0.6
     high: float = 0.95
-    viscosity: float = 0.01
     diffusion: float | None = None
     settle: float = 0.5
     rising: float = 0.5
@@ -108,7 +107,7 @@ class Levee:
                 },
                 {"name": "land", "left": width - self.whole(0.6), "right": width, "bottom": 0, "level": 0},
             ],
-            "numerics": {"spacing": self.spacing, "tension": "cut", "artificial_viscosity": self.viscosity},
+            "numerics": {"spacing": self.spacing},
             "time": {"end": self.end},
             "output": {"snapshot_interval": 0.1, "series_interval": 0.02},
         }  # fmt: skip

@@ -21,7 +21,7 @@ def scene_of(rows: int) -> Scene:
     width = 2.0 * SIDE
     pool = {"bottom": GROUND, "left": 0.0}
     return tank_scene(
-        width, 2.4, spacing, UNTIL, lid=False, numerics={"artificial_viscosity": 0.1, "tension": "cut"},
+        width, 2.4, spacing, UNTIL, lid=False,
         soil={
             "stiffness": 3.71e5, "held": True, "permeability": 0.03, "porosity": 0.4,
             "body": [level_ground(width, GROUND)],

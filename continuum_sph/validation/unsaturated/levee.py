@@ -49,7 +49,6 @@ class Levee(FullLevee):
         found = super().table()
         found["title"] = "A levee that stands by suction, and a river that rises"
         del found["water"]["column"], found["soil"]["saturated"]
-        del found["numerics"]["artificial_viscosity"], found["numerics"]["tension"]
         found["reservoir"] = found["reservoir"][:1]
         found["soil"]["suction"] = {
             "alpha": self.alpha, "n": self.sharp, "residual": self.residual, "water_table": self.low * self.height,

@@ -117,9 +117,7 @@ def convergence_row() -> Measured:
 
 def sunk(seconds: float, rows: int = 20) -> float:
     """How far the middle of a shifted column of 1 m at rest sinks in ``seconds``, m."""
-    scene = column_scene(
-        1.0 / rows, tank=(0.5, 1.2), column=(0.5, 1.0), artificial_viscosity=0.1, gradient="corrected", shifting=2.0
-    )
+    scene = column_scene(1.0 / rows, tank=(0.5, 1.2), column=(0.5, 1.0), gradient="corrected", shifting=2.0)
     flow = water_flow(scene)
     height = flow.layer.x[: flow.layer.fluid, 1]
     before = float(height.mean())

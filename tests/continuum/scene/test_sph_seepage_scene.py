@@ -6,6 +6,8 @@ import pytest
 from continuum_sph.builders.parts import pore_water
 from continuum_sph.builders.parts.mixture import DRY, WET
 from continuum_sph.builders.parts.sheet_pile import NAME
+from continuum_sph.builders.parts.stiffness import sound_speed
+from continuum_sph.builders.parts.water import cuts_tension
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import PACKAGE
@@ -33,12 +35,40 @@ def scene(**changes):
 
 
 def test_soft_water_is_warned_of_and_second_fluids_are_refused():
-    soft = scene(water={"column": [{"width": 0.3, "height": 0.4}]})
+    column = {"column": [{"width": 0.3, "height": 0.4}]}
+    soft = scene(water=column | {"sound_speed": 30.0})
     assert any("n M" in warning for warning in seepage_report(soft).warnings)
     assert not seepage_report(scene()).warnings
+    assert not seepage_report(scene(water=column)).warnings
     bubble = {"disc": [{"x": 0.15, "y": 0.3, "radius": 0.08}]}
     with pytest.raises(InputError, match="inclusion"):
         seepage_report(scene(inclusion=bubble))
+
+
+def test_water_left_to_itself_is_as_stiff_as_its_head_and_the_ground_ask_for():
+    def fast(given, **soil):
+        water = {"column": [{"width": 0.3, "height": 0.4}]} | given
+        return sound_speed(scene(water=water, soil={"body": [{"outline": OUTLINE}]} | soil))
+
+    falls = 10.0 * (2.0 * GRAVITY * 0.4) ** 0.5
+    column = 0.7 / (1.3 * 0.4)  # M/E with ν = 0.3
+    assert fast({"sound_speed": 30.0}, stiffness=2e7) == 30.0
+    assert fast({}, stiffness=1e4) == pytest.approx(falls)
+    assert fast({}, stiffness=2e7) == pytest.approx((10.0 * 0.4 * column * 2e7 / 1000.0) ** 0.5)
+    assert fast({}, stiffness=2e7, held=True) == pytest.approx(falls)
+    assert fast({}, stiffness=1e10) == pytest.approx((2.2e9 / 1000.0) ** 0.5)  # no stiffer than water is
+    hard = {"stiffness": 1e10, "body": [{"outline": OUTLINE}]}
+    hard = scene(water={"column": [{"width": 0.3, "height": 0.4}]}, soil=hard)
+    assert not any("n M" in warning for warning in seepage_report(hard).warnings)
+
+
+def test_water_pulls_on_nothing_beside_ground_and_does_in_the_open_and_in_air():
+    column = {"column": [{"width": 0.3, "height": 0.4}]}
+    assert cuts_tension(scene())
+    assert not cuts_tension(scene(numerics={"spacing": 0.02, "tension": "kept"}))
+    assert not cuts_tension(scene(air={}, tank={"width": 0.3, "height": 0.6}))
+    assert not cuts_tension(tank_scene(0.3, 0.6, 0.02, water=column))
+    assert cuts_tension(tank_scene(0.3, 0.6, 0.02, water=column, numerics={"tension": "cut"}))
 
 
 def test_water_beside_and_over_ground_is_not_in_its_pores():

@@ -1,16 +1,17 @@
 """How a wetting line sags: what phreatic.csv says of it, and what Boussinesq's equation and Darcy's law say it does."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from continuum_sph.builders.parts.phreatic import sagging, wetting_line
-from tests.reference.continuum.wetting import lines
+from continuum_sph.validation.seepage.wetting import LEVEE, lines
 
 X = np.linspace(0.0, 1.0, 201)
 BOUSSINESQ = 1.616
 """Way of the front over √(k h0 t/n), n ∂h/∂t = k ∂(h ∂h/∂x)/∂x, h = h0 at an upright face (Barenblatt 1952)."""
-OUTLINE = [(0.3, 0.0), (0.98, 0.34), (1.18, 0.34), (1.86, 0.0)]  # m, of the case dry_levee
 
 
 @pytest.mark.parametrize(
@@ -32,7 +33,7 @@ def test_a_line_that_does_not_fall_or_has_hardly_begun_has_no_sag():
 
 def test_the_line_starts_where_the_rivers_surface_meets_the_ground():
     x = np.arange(0.02, 2.0, 0.04)
-    ground = np.where((x > 0.3) & (x < 1.86), np.interp(x, *np.array(OUTLINE).T), -np.inf)
+    ground = np.where((x > 0.3) & (x < 1.86), LEVEE.ground(x), -np.inf)
     heights = np.where(x < 0.86, 0.28, np.maximum(0.0, 0.28 - 0.5 * (x - 0.86)))
     places, line = wetting_line(x, heights, ground)
     # both are straight between strips, but for the corner of the surface itself, which lies on the crossing
@@ -46,7 +47,7 @@ def test_the_line_starts_where_the_rivers_surface_meets_the_ground():
 
 def test_it_ends_where_water_comes_out_again():
     x = np.arange(0.02, 2.0, 0.04)
-    ground = np.where((x > 0.3) & (x < 1.86), np.interp(x, *np.array(OUTLINE).T), -np.inf)
+    ground = np.where((x > 0.3) & (x < 1.86), LEVEE.ground(x), -np.inf)
     places, line = wetting_line(x, np.where(x < 1.86, 0.2, 0.1), ground)
     assert places[-1] == pytest.approx(1.86 - 0.4, abs=0.04)  # where the land side is 0.2 m high, to a strip
     assert line[-1] == 0.2
@@ -66,17 +67,13 @@ def test_the_foot_in_dry_ground_goes_as_boussinesq_says():
 
 
 def darcy(seconds, times):
-    """(last place m, sag) at ``times`` (s) in the levee of the case, the river risen from 0.12 to 0.28 m in so many
-    ``seconds``, k = 0.1 m/s."""
-
-    def level(time):
-        return 0.12 + 0.16 * min(1.0, time / seconds)
-
-    found, (x, heights) = [], lines(OUTLINE, level, 0.54, times, 0.1, 0.03)
+    """(last place m, sag) at ``times`` (s) in the levee of the case, the river risen in so many ``seconds``."""
+    levee = replace(LEVEE, rising=seconds)
+    found, (x, heights) = [], lines(levee, times, 0.03)
     for time, line in zip(times, heights, strict=True):
-        edge = 0.3 + 2.0 * level(time)
+        edge = 0.3 + 2.0 * levee.level(time)
         within = (x > edge) & (line > 0.0)
-        found.append(sagging(np.append(edge, x[within]), np.append(level(time), line[within])))
+        found.append(sagging(np.append(edge, x[within]), np.append(levee.level(time), line[within])))
     return np.array(found)
 
 

@@ -43,7 +43,6 @@ row's share, 1/10, of its elastic settlement γ' H²/(2 M)."""
         ({"alpha": -1.0}, {}, r"suction\.alpha"),
         ({"beta": 1.0}, {}, "beta"),
         ({}, {"gravity": 0.0}, "gravity"),
-        ({}, {"water": {}}, r"water\.sound_speed"),
         ({}, {"water": {"column": [{"width": 0.3, "height": 0.3}]}}, r"water\.column.*; use \[\[reservoir\]\]"),
         ({}, {"probe": [{"x": 0.1, "y": 0.1}]}, "probe.*; leave it out: snapshots have pore_pressure and saturation"),
         ({}, {"level": [{"x": 0.1}]}, "level.*; leave it out: the series has the level of every reservoir"),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.seepage import Resistance, Supply, pores, reservoir
-from continuum_sph.validation.seepage import dam, infiltration
+from continuum_sph.validation.seepage import dam, infiltration, wetting
 from continuum_sph.validation.seepage.dam import DAM, STATIONS, SURFACE, Dam
 from continuum_sph.validation.seepage.infiltration import DRAWN
 from tests.reference.continuum.dam import surface
@@ -65,6 +65,12 @@ def test_water_enters_soil_too_fast_under_the_printed_drag(monkeypatch):
     monkeypatch.setattr(Resistance, "factor", PRINTED)
     (found,) = infiltration.fronts(replace(DRAWN, rows=20), (0.3,))
     assert abs(found - 1.0) > 3.0 * tolerance("continuum.imbibition")
+
+
+@pytest.mark.slow
+def test_under_twice_the_drag_the_wetting_line_lies_too_far_back(monkeypatch):
+    monkeypatch.setattr(Resistance, "factor", 2.0)
+    assert wetting.apart.__wrapped__(0.03) > 0.03 * tolerance("continuum.wetting_line_of_a_levee")
 
 
 @pytest.mark.slow
