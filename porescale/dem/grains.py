@@ -160,7 +160,6 @@ class Grains(State):
             self.free_law = law_of_steps(self)
         free = motion is None and not alone and self.segments is None and self.bonds is None
         law = self.free_law if free and self.free_law is not None else self.contact
-        self.last_count = count
         left = count if self.sleep is None else self.sleep.step(self, dt, drag, count)
         while left > 0:
             pairs = self.current_pairs()
@@ -177,8 +176,9 @@ class Grains(State):
             self.steps_of_dt += done
             if self.drivers is not None:
                 self.drivers.start(self.seconds, self.steps_of_dt)
+        for sums in self.means():
+            sums /= count
         if len(self.held):
-            self.withheld /= count
             self.static = what_stands(self, drag)
 
     def plate(self, name: str) -> int:
