@@ -109,13 +109,24 @@ class Grains(State):
         self.rectangle_force = np.zeros((len(rectangles), 2))
 
     def stable_step(self, *, safety: float = SAFETY, steps_per_contact: float = 10.0) -> float:
-        """A safe contact step, s; see timestep.stable_step.  Clumps count as the disc of the same limit."""
-        mass = self.discs.mass
+        """A safe contact step, s; see timestep.stable_step.  Clumps count as the disc of the same limit.
+
+        Where stiffness grows with the radius, a light large disc may be faster than the smallest one: its limit goes
+        with mass over radius.
+        """
+        mass, radius = self.discs.mass, self.discs.radius
+        free = np.arange(len(mass))
         if self.drivers is not None and self.drivers.clumps.count:
             clumps = self.drivers.clumps
-            mass = np.concatenate((mass[clumps.group < 0], [lightest(clumps, self.discs, self.laws)]))
-        smallest = float(mass.min()), float(self.discs.radius.min())
-        return stable_step(self.laws, *smallest, safety=safety, steps_per_contact=steps_per_contact)
+            free = np.flatnonzero(clumps.group < 0)
+            mass = np.concatenate((mass[free], [lightest(clumps, self.discs, self.laws)]))
+        fastest = [(float(mass.min()), float(radius.min()))]
+        if len(free) and any(law.needs_radius for law in self.laws):
+            light = free[np.argmax(radius[free] / self.discs.mass[free])]
+            fastest.append((float(self.discs.mass[light]), float(radius[light])))
+        return min(
+            stable_step(self.laws, *each, safety=safety, steps_per_contact=steps_per_contact) for each in fastest
+        )
 
     def step(
         self,

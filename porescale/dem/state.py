@@ -204,7 +204,11 @@ class State:
         return [self.withheld, *([] if self.drivers is None else self.drivers.means())]
 
     def stiffest_contact(self) -> tuple[float, float]:
-        """Normal stiffness (N/m) and dashpot (N s/m) of the stiffest contact there can be."""
-        d = self.discs
-        found = [law.stiffest(float(d.mass.min()), float(d.radius.min())) for law in self.laws]
+        """Normal stiffness (N/m) and dashpot (N s/m) of the stiffest contact there can be.
+
+        Where they depend on the discs they grow with both: it is that of the largest disc at a wall, as part of the
+        heaviest body.
+        """
+        largest = float(self.body_mass.max()), float(self.discs.radius.max())
+        found = [law.stiffest(*largest) for law in self.laws]
         return max(it.stiffness[0] for it in found), max(it.damping[0] for it in found)
