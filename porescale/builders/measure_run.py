@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from porescale.builders.derive import Derived, derive
+from porescale.builders.initial.apply_sections import names_of
+from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.grains import UNTOUCHED, box_of
 from porescale.builders.parts.flow_fields import total_pressure
 from porescale.builders.parts.flow_instruments import FlowInstruments
@@ -139,7 +141,10 @@ class _Grains:
 def _discs(scene: Scene, cloud: Cloud) -> Discs:
     """The discs of a snapshot, those that are held last, with the masses they had."""
     count = len(cloud.position)
-    density = np.full(count, scene.grains.density if scene.grains else 1.0)
+    density = np.ones(count)
+    if scene.grains:
+        plan = MaterialPlan.of(scene)
+        density = np.array([plan.density(name) for name in names_of(scene, count)])
     density[count - len(scene.disc) :] = scene.fluid.density if scene.fluid else 1000.0
     return make_discs(cloud.position, cloud.data["radius"], density, cloud.data["velocity"][:, :2], cloud.data["spin"])
 
