@@ -1,6 +1,7 @@
 """Contact laws from [contact], [[material]] and [[contact.pair]]."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.compiled.own_kernel import kernel_of
@@ -114,7 +115,7 @@ def densities_of_bodies(scene: Scene) -> list[float]:
     """Densities that free bodies have of their own or of the material that they name, kg/m³, ascending."""
     assert scene.grains
     grains, plan = scene.grains, MaterialPlan.of(scene)
-    bodies = [
+    bodies: list[Any] = [
         *grains.grain,
         *scene.clump,
         *scene.segment,
