@@ -11,8 +11,6 @@ from typing import Any
 import numpy as np
 
 from porescale.builders.derive import Derived, derive
-from porescale.builders.initial.apply_sections import names_of
-from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.grains import UNTOUCHED, box_of
 from porescale.builders.parts.flow_fields import total_pressure
 from porescale.builders.parts.flow_instruments import FlowInstruments
@@ -117,7 +115,10 @@ def _regions(scene: Scene, derived: Derived, snapshot: Snapshot) -> dict[str, fl
     """A row of regions.csv without its time."""
     law = derived.law or UNTOUCHED
     discs = _discs(scene, snapshot.clouds["grains"])
-    stand_in: Any = _Grains(scene, Grains(discs, law, box_of(scene.domain), wall_law=derived.wall_law))
+    grains = Grains(discs, law, box_of(scene.domain), wall_law=derived.wall_law)
+    for it in scene.control:
+        grains.hold(it.of[1], *(axis.prescribes for axis in (it.x, it.y, it.rotation)))
+    stand_in: Any = _Grains(scene, grains)
     instruments, cloud = GrainInstruments(stand_in), snapshot.clouds.get(CONTACTS)
     found = _contacts(discs, cloud)
     loose = instruments.rattling(found)
@@ -141,10 +142,7 @@ class _Grains:
 def _discs(scene: Scene, cloud: Cloud) -> Discs:
     """The discs of a snapshot, those that are held last, with the masses they had."""
     count = len(cloud.position)
-    density = np.ones(count)
-    if scene.grains:
-        plan = MaterialPlan.of(scene)
-        density = np.array([plan.density(name) for name in names_of(scene, count)])
+    density = np.full(count, scene.grains.density if scene.grains else 1.0)
     density[count - len(scene.disc) :] = scene.fluid.density if scene.fluid else 1000.0
     return make_discs(cloud.position, cloud.data["radius"], density, cloud.data["velocity"][:, :2], cloud.data["spin"])
 

@@ -1,4 +1,4 @@
-"""Checks, reports and measures of grains whose material has a density of its own use that one, not grains.density."""
+"""Checks and reports of grains whose material has a density of its own use that one, not grains.density."""
 
 import math
 
@@ -8,7 +8,6 @@ import pytest
 from porescale import build
 from porescale.builders.checks.regime import expected_speed
 from porescale.builders.derive import derive
-from porescale.builders.measure_run import _discs
 from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from tests.reference.scenes import column, dry, grain, warned, water
@@ -95,10 +94,3 @@ def test_the_largest_speed_is_that_of_the_heaviest_grain():
 
     assert speed(scene) == speed(alone)
     assert math.isfinite(speed(scene))
-
-
-def test_regions_measured_afterwards_have_the_masses_of_the_run():
-    scene = of(LIGHT, dry)
-    simulation = build(scene)
-    cloud = simulation.snapshot().clouds["grains"]
-    assert _discs(scene, cloud).mass == pytest.approx(simulation.grains.discs.mass, rel=1e-12)
