@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,15 +18,13 @@ from porescale.common.api.shown_simulation import ShownSimulation
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
-from porescale.common.record.part import Part, overrides, restore, row_of, state_of, tables_of
+from porescale.common.record.part import overrides, restore, row_of, state_of, tables_of
 from porescale.common.schema.sections import scene_as_dict
 
 if TYPE_CHECKING:
     from porescale.common.api.report import Report
     from porescale.common.pictures.initial import Initial
     from porescale.common.pictures.look import Look
-
-P = TypeVar("P", bound=Part)
 
 
 def assemble(scene: Scene) -> Assembly:
@@ -144,10 +142,6 @@ class Simulation(ShownSimulation):
     def _after(self) -> None:
         for part in self.parts:
             part.after()
-
-    def part(self, kind: type[P]) -> P:
-        """The first part of a ``kind``; StopIteration where there is none."""
-        return next(part for part in self.parts if isinstance(part, kind))
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""

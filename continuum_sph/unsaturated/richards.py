@@ -164,14 +164,38 @@ def flow_rates(state, permeability, near, outer, weight, outer_weight, propertie
 
 def unity(kind: int, ratio: float) -> float:
     """c: the inverse of -Σ V x² (1/r) W' over a square lattice, of a kernel of a ``kind`` with h ``ratio`` spacings."""
-    reach = math.ceil(2.0 * ratio)
-    sites = np.arange(-reach, reach + 1, dtype=float)
     total = 0.0
-    for x in sites:
-        for y in sites:
-            if x or y:
-                total -= x * x * float(kernel_slope(kind, math.hypot(x, y) / ratio, ratio))
+    for x, y in _lattice(ratio):
+        total -= x * x * float(kernel_slope(kind, math.hypot(x, y) / ratio, ratio))
     return 1.0 / total
+
+
+def lattice_rate(kind: int, ratio: float) -> float:
+    """Rate (1/s) at which a piece within a square lattice goes to the head of the others, over D/spacing²: what
+    `flow_rates` returns of full pores, where D = k K_w/(n ρ_w g)."""
+    slopes = [float(kernel_slope(kind, math.hypot(x, y) / ratio, ratio)) for x, y in _lattice(ratio)]
+    return -2.0 * unity(kind, ratio) * math.fsum(slopes)
+
+
+def _lattice(ratio: float) -> list[tuple[float, float]]:
+    """Places within 2 h, of h ``ratio`` spacings, of a square lattice about the one at 0, in spacings."""
+    reach = math.ceil(2.0 * ratio)
+    sites = [float(it) for it in range(-reach, reach + 1)]
+    return [(x, y) for x in sites for y in sites if x or y]
+
+
+def stages_of(share: float) -> int:
+    """Stages of each half of a step that is so many times the longest safe one: an odd number, at most MOST_STAGES."""
+    stages = max(1, math.ceil(0.5 * (math.sqrt(1.0 + 4.0 * min(share, 1e6)) - 1.0) - 1e-9))
+    return min(MOST_STAGES, stages | 1)
+
+
+def stages_in(share: float) -> int:
+    """Stages that `Moisture.advance` takes for a time that is so many times the longest safe step, of pores whose
+    filling hardly changes."""
+    most = float(MOST_STAGES * (MOST_STAGES + 1))
+    whole = max(0, math.ceil(share / most) - 1)
+    return 2 * (whole * MOST_STAGES + stages_of(share - whole * most))
 
 
 @dataclass
@@ -243,8 +267,7 @@ class Moisture:
             fastest, quickest = self.rates(near, outer, first)
             longest = SAFE / fastest if fastest > 0.0 else math.inf
             wanted = min(left, CHANGE * self.porosity / quickest) if quickest > 0.0 else left
-            stages = max(1, math.ceil(0.5 * (math.sqrt(1.0 + 4.0 * min(wanted / longest, 1e6)) - 1.0) - 1e-9))
-            stages = min(MOST_STAGES, stages | 1)
+            stages = stages_of(wanted / longest)
             step = min(wanted, longest * stages * (stages + 1))
             self._legendre(0.5 * step, stages, first, near, outer)
             self.update(self.content)

@@ -18,7 +18,7 @@ from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_ce
 from porescale.builders.checks.prescribed import check_controls, check_motions
 from porescale.builders.checks.regime import check_regime, expected_speed, too_soft, travel_step
 from porescale.builders.initial.clumps import lightest, undisplaced_clumps
-from porescale.builders.initial.contact_laws import MaterialPlan, law_class
+from porescale.builders.initial.contact_laws import MaterialPlan, densities_of_bodies, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, longest_of, placed_frames, sizes_of
 from porescale.builders.initial.packing import radii_of
 from porescale.builders.initial.placed import by_hand, packed_count, placed
@@ -59,7 +59,7 @@ class Derived:
     model_step: float = 0.0  # s
     grain_count: int = 0
     diameters: tuple[float, float, float] | None = None  # smallest, mean, largest, m
-    mean_mass: float = 0.0  # kg/m, of a grain of mean diameter
+    mean_mass: float = 0.0  # kg/m, of a grain of mean diameter at the density of [grains]
     speed: float = 0.0  # m/s, the largest to expect
     density_variation: float = 0.0
     warnings: tuple[str, ...] = field(default=())
@@ -124,8 +124,10 @@ def derive(scene: Scene) -> Derived:
         warnings += filter(None, [too_soft(scene, scales, sizes, (law, wall_law), frames)])
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)
-    if frames and law:
-        warnings += filter(None, [thin_for(frames, speed, mean_mass, law)])
+    if frames and law and scene.grains:
+        warnings += filter(
+            None, [thin_for(frames, speed, mean_mass * densities_of_bodies(scene)[-1] / scene.grains.density, law)]
+        )
     warnings += strays(scene.domain, scene.time.end, frames)
     warnings += unused_spread(scene)
     variation = 0.0

@@ -115,7 +115,10 @@ def _regions(scene: Scene, derived: Derived, snapshot: Snapshot) -> dict[str, fl
     """A row of regions.csv without its time."""
     law = derived.law or UNTOUCHED
     discs = _discs(scene, snapshot.clouds["grains"])
-    stand_in: Any = _Grains(scene, Grains(discs, law, box_of(scene.domain), wall_law=derived.wall_law))
+    grains = Grains(discs, law, box_of(scene.domain), wall_law=derived.wall_law)
+    for it in scene.control:
+        grains.hold(it.of[1], *(axis.prescribes for axis in (it.x, it.y, it.rotation)))
+    stand_in: Any = _Grains(scene, grains)
     instruments, cloud = GrainInstruments(stand_in), snapshot.clouds.get(CONTACTS)
     found = _contacts(discs, cloud)
     loose = instruments.rattling(found)

@@ -18,6 +18,7 @@ from porescale.builders.cost import (
     work,
 )
 from porescale.builders.derive import Derived, derive
+from porescale.builders.initial.contact_laws import density_of_packing
 from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.builders.kinds import SECTIONS
@@ -63,13 +64,13 @@ def report(scene: Scene) -> Report:
     if scene.grains:
         wanted = scene.permeability.wanted if scene.permeability else None
         _grains(scene.grains, derived.grain_count - len(scene.disc), derived, wanted, out)
-        _contact(derived, out)
+        _contact(derived, density_of_packing(scene) / scene.grains.density, out)
     if next(own_laws(scene), None):
         _own_laws(scene, derived, out)
     if derived.corners:
         _frames(scene, derived, out)
     if scene.fluid and scene.grains:
-        _regime(scene.grains.density, math.hypot(*scene.gravity), derived, out)
+        _regime(density_of_packing(scene), math.hypot(*scene.gravity), derived, out)
     _cost(scene, derived, out)
     for warning in (*derived.warnings, *of_bonds, *homogenise_doubts(scene)):
         out.warn(warning)
@@ -182,7 +183,8 @@ def _lambda(grains: Grains, packing_fraction: float, wanted: float | None, out: 
         )
 
 
-def _contact(derived: Derived, out: Report) -> None:
+def _contact(derived: Derived, heavier: float, out: Report) -> None:
+    """Of mean grains, ``heavier`` than at the density of [grains]."""
     law, wall = derived.law, derived.wall_law
     assert law is not None
     assert wall is not None
@@ -190,7 +192,7 @@ def _contact(derived: Derived, out: Report) -> None:
     assert derived.contact_limit is not None
     assert derived.contact_step is not None
     out.heading("Contact")
-    mass = derived.mean_mass / 2
+    mass = heavier * derived.mean_mass / 2
     radius = derived.diameters[1] / 4  # reduced, of two mean grains
     lasts, remark = law.contact_report(mass, radius)
     out.row("damping ratio of a pair", law.ratio_of_damping(mass, radius))
@@ -213,7 +215,7 @@ def _own_laws(scene: Scene, derived: Derived, out: Report) -> None:
     for (key, unit), number in zip(law.units.items(), law.numbers, strict=True):
         out.row(f"contact.{key}", number, unit)
     radius = derived.diameters[0] / 2
-    mass = math.pi * radius**2 * (scene.grains.density if scene.grains else 0.0)
+    mass = math.pi * radius**2 * (density_of_packing(scene) if scene.grains else 0.0)
     out.row("stiffest tangent", law.stiffest(mass, radius).stiffness[0], "N/m", f"up to {law.deepest:g} of a radius")
     fastest = law.fastest_impact(mass, radius)
     for speed in (0.01 * fastest, 0.1 * fastest, fastest):

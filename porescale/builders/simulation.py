@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from porescale.builders.initial.frames import disc_count
 from porescale.builders.stepper import Fields, Stepper
@@ -15,15 +15,13 @@ from porescale.common.api.simulation import absent
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
-from porescale.common.record.part import Part, acts_between, overrides, restore, row_of, state_of, tables_of
+from porescale.common.record.part import acts_between, overrides, restore, row_of, state_of, tables_of
 from porescale.common.schema.sections import scene_as_dict
 
 if TYPE_CHECKING:
     from porescale.common.api.report import Report
     from porescale.common.pictures.initial import Initial
     from porescale.common.pictures.look import Look
-
-P = TypeVar("P", bound=Part)
 
 
 class Simulation(ShownSimulation):
@@ -64,10 +62,6 @@ class Simulation(ShownSimulation):
         """Length of a step, s."""
         return self.clock.seconds
 
-    def part(self, kind: type[P]) -> P | None:
-        """The part of this class; None where the scene has no section for it."""
-        return next((part for part in self.parts if isinstance(part, kind)), None)
-
     def motion(self) -> tuple[Floats, Floats]:
         """Positions (n, 2) m and velocities (n, 2) m/s of the discs; views.  In a strained cell, as they are shown.
 
@@ -75,7 +69,7 @@ class Simulation(ShownSimulation):
         """
         from porescale.builders.parts.clouds import GrainCloud
 
-        cloud = self.part(GrainCloud)
+        cloud = self._part_or_none(GrainCloud)
         if cloud is None:
             raise absent("positions", *self._instead_of_grains())
         position, velocity = cloud.motion()
@@ -170,9 +164,9 @@ class Simulation(ShownSimulation):
         from porescale.builders.parts.clouds import GrainCloud
         from porescale.builders.parts.user_forces import UserForces
 
-        part = self.part(UserForces)
+        part = self._part_or_none(UserForces)
         if part is None:
-            cloud = self.part(GrainCloud)
+            cloud = self._part_or_none(GrainCloud)
             if cloud is None:
                 raise absent(f"force {hook.name}", "discs that it could act on", "add [grains], [[disc]] or [[clump]]")
             part = UserForces(self.stepper, self.coupled, cloud, self._held)

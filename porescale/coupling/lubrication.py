@@ -143,7 +143,7 @@ class Lubrication:
         less = float((discs.radius - radius).min()) if discs.count else 0.0
         grains.list_up_to(max(0.0, cut - 2 * less))
         self.force, self._sum = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
-        self._total, self._withheld = np.zeros((discs.count, 2)), np.zeros((discs.count, 3))
+        self._total, self._means = np.zeros((discs.count, 2)), list[Floats]()
 
     def thinnest(self, reduced_radius: Floats, mass: Floats) -> Floats:
         """g_min, m, of films with ``reduced_radius`` (m) whose lighter disc has ``mass`` (kg/m)."""
@@ -153,7 +153,11 @@ class Lubrication:
         """``count`` contact steps with force (n, 2) N/m and torque (n,) N m/m held and films as they are in each."""
         d = grains.discs
         self._sum[:] = 0.0
-        self._withheld[:] = 0.0
+        means = grains.means()
+        if [it.shape for it in self._means] != [it.shape for it in means]:
+            self._means = [np.zeros_like(it) for it in means]
+        for it in self._means:
+            it[:] = 0.0
         for _ in range(count):
             pairs = grains.current_pairs()
             self._total[:] = force
@@ -163,9 +167,9 @@ class Lubrication:
             )  # fmt: skip
             np.add(self._sum, self._total, out=self._sum)
             grains.step(self.dt, self._total, torque)
-            if len(grains.held):
-                np.add(self._withheld, grains.withheld, out=self._withheld)
+            for it, of_step in zip(self._means, means, strict=True):
+                np.add(it, of_step, out=it)
         np.divide(self._sum, count, out=self._sum)
         np.subtract(self._sum, force, out=self.force)
-        if len(grains.held):
-            np.divide(self._withheld, count, out=grains.withheld)
+        for it, of_call in zip(self._means, means, strict=True):
+            np.divide(it, count, out=of_call)

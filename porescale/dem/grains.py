@@ -109,13 +109,24 @@ class Grains(State):
         self.rectangle_force = np.zeros((len(rectangles), 2))
 
     def stable_step(self, *, safety: float = SAFETY, steps_per_contact: float = 10.0) -> float:
-        """A safe contact step, s; see timestep.stable_step.  Clumps count as the disc of the same limit."""
-        mass = self.discs.mass
+        """A safe contact step, s; see timestep.stable_step.  Clumps count as the disc of the same limit.
+
+        Where stiffness grows with the radius, a light large disc may be faster than the smallest one: its limit goes
+        with mass over radius.
+        """
+        mass, radius = self.discs.mass, self.discs.radius
+        free = np.arange(len(mass))
         if self.drivers is not None and self.drivers.clumps.count:
             clumps = self.drivers.clumps
-            mass = np.concatenate((mass[clumps.group < 0], [lightest(clumps, self.discs, self.laws)]))
-        smallest = float(mass.min()), float(self.discs.radius.min())
-        return stable_step(self.laws, *smallest, safety=safety, steps_per_contact=steps_per_contact)
+            free = np.flatnonzero(clumps.group < 0)
+            mass = np.concatenate((mass[free], [lightest(clumps, self.discs, self.laws)]))
+        fastest = [(float(mass.min()), float(radius.min()))]
+        if len(free) and any(law.needs_radius for law in self.laws):
+            light = free[np.argmax(radius[free] / self.discs.mass[free])]
+            fastest.append((float(self.discs.mass[light]), float(radius[light])))
+        return min(
+            stable_step(self.laws, *each, safety=safety, steps_per_contact=steps_per_contact) for each in fastest
+        )
 
     def step(
         self,
@@ -160,7 +171,6 @@ class Grains(State):
             self.free_law = law_of_steps(self)
         free = motion is None and not alone and self.segments is None and self.bonds is None
         law = self.free_law if free and self.free_law is not None else self.contact
-        self.last_count = count
         left = count if self.sleep is None else self.sleep.step(self, dt, drag, count)
         while left > 0:
             pairs = self.current_pairs()
@@ -177,8 +187,9 @@ class Grains(State):
             self.steps_of_dt += done
             if self.drivers is not None:
                 self.drivers.start(self.seconds, self.steps_of_dt)
+        for sums in self.means():
+            sums /= count
         if len(self.held):
-            self.withheld /= count
             self.static = what_stands(self, drag)
 
     def plate(self, name: str) -> int:

@@ -78,8 +78,8 @@ class State:
     held;  withheld (n, 3) N/m, N/m, N m/m: force and torque that held components did not follow, mean over the last
     call of ``step``; both (0, 3) until first used.
     Parts: drivers (clumps, controls, moving walls, strain), segments, bonds, sleep; None where there is none.
-    Clock: steps, last_count (steps of the last call), last_dt (s), seconds (before the step last changed), steps_of_dt
-    (since then).  Last check: plate_sides (p, 3, n): right of the plate, beside it, height, valid if plates_checked.
+    Clock: steps, last_dt (s), seconds (before the step last changed), steps_of_dt (since then).
+    Last check: plate_sides (p, 3, n): right of the plate, beside it, height, valid if plates_checked.
     static: where nothing can move, see resting/static.py.  checked: what ``step`` was last given: dt (s), count,
     drag (1/s) and the type of the count; force and torque, as they were given.
     """
@@ -125,7 +125,7 @@ class State:
         self.bonds: BondList | None = None
         self.sleep: Sleeping | None = None
         self.still = Still(*box.period)
-        self.steps, self.last_count, self.last_dt, self.seconds, self.steps_of_dt = 0, 0, 0.0, 0.0, 0
+        self.steps, self.last_dt, self.seconds, self.steps_of_dt = 0, 0.0, 0.0, 0
         self.plate_sides, self.plates_checked = np.zeros((len(plates), 3, count)), False
         self.static: StaticState | None = None
         self.checked: tuple[StepNumbers, Floats | None, Floats | None] = (0.0, 0, 0.0, int), None, None
@@ -199,8 +199,16 @@ class State:
         """Count steps and seconds from zero again."""
         self.steps, self.seconds, self.steps_of_dt = 0, 0.0, 0
 
+    def means(self) -> list[Floats]:
+        """Views of what ``step`` leaves as means over its steps: ``withheld``, and what drivers have; see there."""
+        return [self.withheld, *([] if self.drivers is None else self.drivers.means())]
+
     def stiffest_contact(self) -> tuple[float, float]:
-        """Normal stiffness (N/m) and dashpot (N s/m) of the stiffest contact there can be."""
-        d = self.discs
-        found = [law.stiffest(float(d.mass.min()), float(d.radius.min())) for law in self.laws]
+        """Normal stiffness (N/m) and dashpot (N s/m) of the stiffest contact there can be.
+
+        Where they depend on the discs they grow with both: it is that of the largest disc at a wall, as part of the
+        heaviest body.
+        """
+        largest = float(self.body_mass.max()), float(self.discs.radius.max())
+        found = [law.stiffest(*largest) for law in self.laws]
         return max(it.stiffness[0] for it in found), max(it.damping[0] for it in found)

@@ -15,7 +15,7 @@ from porescale.dem.forces.walls import TURN
 from porescale.dem.listing import refresh
 from porescale.dem.motion import affine_strain as cells
 from porescale.dem.motion import servo as servos
-from porescale.dem.motion.control import KINDS, PUSH, Control
+from porescale.dem.motion.control import KINDS, PUSH, SUPPLY, Control
 from porescale.dem.motion.drivers import Clump, Drivers, LoadRecord
 from porescale.dem.motion.time_function import Schedule
 from porescale.dem.state import State
@@ -104,14 +104,14 @@ class Steering(Drivers):
 
     def record(self) -> list[LoadRecord]:
         """Force and displacement of every recorded body now, after a call of step."""
-        rows, count = [], max(self._grains.last_count, 1)
+        rows = []
         for k, body in enumerate(self._watched):
             where = self._locate(body)
-            met = self._watched_load[k] / count
+            met = self._watched_load[k]
             supply = np.zeros(3)
             for row, given in zip(self._controls, self._given, strict=True):
                 if row[:2] == where:
-                    supply[row[2]] = given[0] / count
+                    supply[row[2]] = given[SUPPLY]
             gone = self._place(*where) - self._watched_from[k]
             rows.append(LoadRecord(self._grains.time, body, *(tuple(part.tolist()) for part in (gone, met, supply))))
         return rows

@@ -78,6 +78,27 @@ def test_a_held_disc_is_solid_but_has_no_mass():
     assert float(fields.cells["solid_fraction"].sum(dtype=float)) * cell == pytest.approx(5 * area, rel=1e-6)
 
 
+@pytest.mark.parametrize("body", ["grain", "clump"])
+@pytest.mark.parametrize("rotation", [{"velocity": 0.0}, "free"])
+def test_what_is_moved_in_all_components_is_none_of_the_grains(body, rotation):
+    whole = {"name": "box", "lower": [0.0, 0.0], "upper": [0.012, 0.008]}
+    moving, towed = {**grain(0.003, 0.004), "velocity": [0.1, 0.0]}, grain(0.008, 0.004)
+    clump = [{"discs": [[-0.0003, 0.0, 0.0005], [0.0003, 0.0, 0.0005]], "at": [[0.008, 0.004]]}]
+    control = {body: 1 if body == "grain" else 0, "x": {"velocity": -0.2}, "y": {"velocity": 0.0}, "rotation": rotation}
+    system = build(dry(
+        grains={"density": 2500, "grain": [moving, towed] if body == "grain" else [moving]}, region=[whole],
+        clump=clump if body == "clump" else [], control=[control], gravity=[0.0, 0.0],
+    ))  # fmt: skip
+    system.advance(1)
+    row, series = system.tables()["regions"], system.series()
+    free = rotation == "free"  # the check that must fail: a component that is free makes it a grain
+    assert (row["box velocity x (m/s)"] == pytest.approx(0.1, rel=1e-12)) != free
+    assert (series["front (m)"] == pytest.approx(0.0035, rel=1e-2)) != free
+    assert (series["largest grain speed (m/s)"] == pytest.approx(0.1, rel=1e-12)) != free
+    assert (row["box kinetic stress xx (Pa)"] == pytest.approx(0.0, abs=1e-12)) != free
+    assert row["box porosity ()"] < 1 - 1.9 * math.pi * 0.0005**2 / (0.012 * 0.008)  # solid it is
+
+
 def test_tables_of_grains_in_fluid_carry_the_hydraulic_radius_ratio():
     control = [{"grain": 0, "x": {"velocity": 0.001}, "record": True}]
     for made, known in ((column, True), (dry, False)):

@@ -15,7 +15,7 @@ from porescale.builders.report import report
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.scene.time_function import TimeFunction
-from tests.reference.scenes import dry, grain, refusals, warned, water
+from tests.reference.scenes import column, dry, grain, refusals, warned, water
 
 EPS = np.finfo(float).eps
 H = 0.0002
@@ -197,6 +197,22 @@ def test_speed_and_sound_of_an_oscillation_are_judged():
     said = {k: warned(box(disc=[d]), "swings") for k, d in enumerate((quiet, loud))}
     assert said[0] == []  # the twin
     assert said[1][0].startswith("disc 0 swings at 50 Hz, by 1.3 rad while sound crosses the box")
+
+
+def test_a_body_that_is_moved_at_one_speed_does_not_swing():
+    def said(way):
+        grains = {
+            "density": 2500,
+            "hydraulic_radius_ratio": 1.0,
+            "grain": [{"x": 0.006, "y": 0.004, "diameter": 0.001}],
+        }
+        given = {"gate": None, "grains": grains, "gravity": [0.0, 0.0]}
+        return warned(column(**given, control=[{"grain": 0, "x": {"displacement": way}}]), "swings")
+
+    assert said([[0.0, 0.0], [0.004, 2e-4]]) == []
+    assert said([[0.0, 0.0], [0.002, 1e-4], [0.004, 1e-4]]) == []
+    (line,) = said([[0.0, 0.0], [0.004, 2e-4], [0.008, 0.0]])  # the check that must fail: it comes back
+    assert line.startswith("what control 0 moves swings at 79.6 Hz")
 
 
 def test_nothing_of_it_is_built_where_there_is_none():

@@ -20,6 +20,7 @@ import porescale.lbm.boundary.thin_plate
 import porescale.lbm.fluid
 from porescale.builders.parts.gate import GatePart
 from porescale.builders.simulation import Simulation
+from porescale.common.core.errors import InputError
 from porescale.dem.forces.batch import scratch
 from tests.reference.same_run import leaves
 from tests.reference.scenes import column, dry, grain, table, water
@@ -170,7 +171,8 @@ def test_without_a_gate_there_is_no_plate(monkeypatch):
     forbid(monkeypatch, "Plate")
     for scene in (column(gate=None, grains__packing__settle=False), dry(), water()):
         simulation = build(scene)
-        assert simulation.part(GatePart) is None
+        with pytest.raises(InputError, match=r"part = 'GatePart': is not built by this scene \(allowed: .*Part"):
+            simulation.part(GatePart)
         assert simulation.fluid is None or simulation.fluid.plates == []
         assert simulation.grains is None or len(simulation.grains.plates) == 0
 

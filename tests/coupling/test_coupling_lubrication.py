@@ -11,6 +11,7 @@ from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
+from porescale.dem.motion.control import Moved
 from porescale.validation.coupling import setups as lab
 
 EPS = np.finfo(float).eps
@@ -187,6 +188,27 @@ def test_holders_bear_the_films_too_and_only_contacts_are_contacts():
         if not coupled.grains.pairs.carried.any():
             assert np.abs(rest).max() < 40 * EPS
     assert met > 10
+
+
+def test_a_body_with_a_prescribed_motion_has_the_mean_load_of_a_fluid_step():
+    def loads(lubrication):
+        # two discs in contact, moved 0.3 a fluid step apart by the one's control; touching discs have no film
+        made = lab.immersed((40, 30), [(14.0, 15.0), (21.5, 15.0)], 4.0, [2.0, 3.0], [(0.0, 0.0), (0.0, 0.0)])
+        coupled = Coupled(
+            made.fluid, made.grains, made.scales, hydraulic_ratio=1.0, contact_steps=4, acceleration=(0.0, 0.0),
+            lubrication=lubrication,
+        )  # fmt: skip
+        steering = coupled.grains.steering
+        steering.control(0, x=Moved(-0.3), y=Moved(0.0), rotation=Moved(0.0))
+        steering.control(1, x=Moved(0.0), y=Moved(0.0), rotation=Moved(0.0))
+        steering.watch(0, 1)
+        coupled.advance()
+        coupled.grains.restore(coupled.grains.state())
+        return np.array([[*row.contact, *row.supply] for row in steering.record()])
+
+    mean = loads(False)
+    assert mean[0, 0] < -1e-6 < 1e-6 < mean[1, 0]
+    np.testing.assert_allclose(loads(True), mean, rtol=1e-12, atol=1e-12 * np.abs(mean).max())
 
 
 def test_films_slow_an_approach():

@@ -68,6 +68,34 @@ def test_grains_move_straight_between_snapshots_and_push_tracers_out():
     assert between.solid_at(np.array([0.024]), np.array([0.008]), 0.0).all()
 
 
+@pytest.mark.parametrize("speed", [0.02, None])
+def test_a_grain_that_crosses_a_periodic_side_leaves_there_and_comes_in_at_the_other(speed):
+    def snapshot(time, x):
+        shot = rotating(time, 0, (x, 0.008, 0.003))
+        if speed is not None:
+            shot.clouds["grains"].data["velocity"] = np.array([[speed, 0.0, 0.0]])
+        return shot
+
+    between = Between(instant(snapshot(0.0, 0.031), ""), instant(snapshot(0.1, 0.001), ""))
+    half = between.grains(0.05)
+    assert sorted(half.x) == pytest.approx([0.0, SIDE])  # both sides of the picture, and not its middle
+    assert half.y == pytest.approx([0.008, 0.008])
+    assert half.radius == pytest.approx([0.003, 0.003])
+    assert sorted(between.grains(0.1).x) == pytest.approx([0.001, SIDE + 0.001])
+    assert not between.solid_at(np.array([0.016]), np.array([0.008]), 0.05).any()
+    assert between.solid_at(np.array([0.001, 0.031]), np.array([0.008] * 2), 0.05).all()
+
+
+def test_a_grain_as_fast_as_it_goes_far_stays_in_the_picture():
+    def snapshot(time, x):
+        shot = rotating(time, 0, (x, 0.008, 0.003))
+        shot.clouds["grains"].data["velocity"] = np.array([[-0.3, 0.0, 0.0]])
+        return shot
+
+    between = Between(instant(snapshot(0.0, 0.029), ""), instant(snapshot(0.1, 0.004), ""))
+    assert between.grains(0.05).x == pytest.approx([0.0165])  # three quarters of the width, in 0.1 s at 0.3 m/s
+
+
 def test_the_nearest_rim_is_that_of_all_grains():
     random = np.random.default_rng(0)
     grains = Discs(*random.uniform(0, 1, (2, 30)), random.uniform(0.02, 0.04, 30))

@@ -234,7 +234,7 @@ def test_a_scene_without_rectangles_builds_nothing_and_does_nothing_for_them(mon
     simulation = build(column())
     simulation.advance(3)
     simulation.series()
-    assert simulation.part(rectangles.RectanglesPart) is None
+    assert not [part for part in simulation.parts if isinstance(part, rectangles.RectanglesPart)]
     assert simulation.coupled.saturated.bodies is None
     assert len(simulation.grains.rectangles) == simulation.grains.rectangle_spring.size == 0
     assert not [key for key in simulation.state() if "made" in key]

@@ -8,14 +8,13 @@ from continuum_sph.builders.parts.suction import require_filled, retention_of, s
 from continuum_sph.builders.reports.seepage_report import report_stiffness
 from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
-from continuum_sph.unsaturated.richards import MOST_STAGES, SAFE
+from continuum_sph.unsaturated.richards import MOST_STAGES, SAFE, lattice_rate, stages_in
 from continuum_sph.unsaturated.step import SHARE
 from porescale.common.api.report import Report
 from porescale.common.core.constants import GRAVITY
 
 FROM_EARTHS = 0.01  # of gravity: less is in no permeability that is measured
 HALF = 0.5
-HALVES = 2  # of a step, in each of which water flows so many stages
 
 
 def suction_report(scene: Scene) -> Report:
@@ -24,27 +23,28 @@ def suction_report(scene: Scene) -> Report:
     section, suction, law = porous_section(scene), suction_section(scene), retention_of(scene)
     require_filled(scene, soil_particles(scene)[0][:, 1])
     numbers, porosity, (least, most) = law.numbers, section.porosity, section.permeabilities
-    modulus, h = largest_modulus(scene), soil_law(scene).smoothing.length
+    modulus, smoothing, spacing = largest_modulus(scene), soil_law(scene).smoothing, scene.numerics.spacing
+    h = smoothing.length
     whole = section.density + numbers.residual * porosity * scene.water.density
     step = SHARE * h / ((modulus + law.stiffness / porosity) / whole) ** 0.5
-    # the fastest wave that the lattice has: 8/spacing² of D = k K_w/(n rho g), about
-    longest = SAFE * porosity * law.weight * scene.numerics.spacing**2 / (4.0 * most * law.stiffness)
-    stages = max(1.0, 0.5 * (math.sqrt(1.0 + 8.0 * step / longest) - 1.0))
-    out = soil_report(scene, step, HALVES * stages)
+    diffusivity = most * law.stiffness / (porosity * law.weight)
+    longest = SAFE * spacing**2 / (diffusivity * lattice_rate(smoothing.kind, h / spacing))
+    stages = stages_in(step / longest)
+    out = soil_report(scene, step, stages)
     out.heading("suction")
     fringe = float(law.suction(HALF))
     out.row("capillary height", fringe, "m", "where S_e is a half, at rest over water")
     out.row("suction there", fringe * law.weight, "Pa")
-    out.row("spacings in it", fringe / scene.numerics.spacing)
+    out.row("spacings in it", fringe / spacing)
     out.row("time to rise as high", porosity * fringe / least, "s", "about: n h/k")
     out.row("time to sink through the soil", porosity * section.height / least, "s", "n H/k")
     out.row("cohesion of half full pores at most", HALF * fringe * law.weight * math.tan(section.friction_angle), "Pa",
             "S_e psi tan phi")  # fmt: skip
     report_stiffness(out, law.stiffness, porosity * modulus, scene.water.density)
     out.row("longest step for sound in soil that cannot drain", step, "s")
-    out.row("stages of flow in a step", stages, "", f"of full pores; more than {MOST_STAGES} are several")
-    if fringe < 2.0 * scene.numerics.spacing:
-        out.warn(f"the capillary height is {fringe / scene.numerics.spacing:.2g} spacings: lower numerics.spacing")
+    out.row("stages of flow in a step", stages, "", f"of full pores; more than {2 * MOST_STAGES} are several steps")
+    if fringe < 2.0 * spacing:
+        out.warn(f"the capillary height is {fringe / spacing:.2g} spacings: lower numerics.spacing")
     if abs(scene.gravity / GRAVITY - 1.0) > FROM_EARTHS:
         out.warn(
             f"with suction soil.permeability and alpha are those under the scene's gravity, {scene.gravity:g} m/s2, "

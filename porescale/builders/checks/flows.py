@@ -8,6 +8,7 @@ from typing import NamedTuple
 from porescale.analysis.permeability import gebart
 from porescale.builders.checks.limits import DENSITY_REFUSE
 from porescale.builders.checks.own_laws import impulse, largest_force
+from porescale.builders.initial.contact_laws import MaterialPlan, density_of_packing
 from porescale.builders.initial.placed import by_hand
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.constants import EDGE
@@ -169,8 +170,9 @@ def _past_free_grains(scene: Scene, scales: Scales, axis: int) -> float:
     solids = _free_discs(scene, grains, grains.hydraulic_radius_ratio or 1.0)
     share = sum(it.area for it in solids) / (scene.domain.width * scene.domain.height)
     force = scene.fluid.body_force[axis]
-    pull = force + share * (grains.density - scales.density) * scene.gravity[axis]
-    together = abs(pull) / (scales.density * (1 - share) + grains.density * share) * scene.time.end
+    heavy = _mean_density(scene, solids)
+    pull = force + share * (heavy - scales.density) * scene.gravity[axis]
+    together = abs(pull) / (scales.density * (1 - share) + heavy * share) * scene.time.end
     return together + abs(force) / scales.density * _past_solids(scene, solids, axis) / scales.viscosity
 
 
@@ -183,6 +185,17 @@ def _free_discs(scene: Scene, grains: Grains, ratio: float) -> list[Solid]:
         area = ratio**2 * packing.packing_fraction * packing.width * packing.height
         solids.append(Solid(*corners, area, 0.5 * ratio * packing.diameter))
     return solids
+
+
+def _mean_density(scene: Scene, solids: list[Solid]) -> float:
+    """Density (kg/m³) of all ``solids`` (`_free_discs`) together: of each its material's."""
+    plan = MaterialPlan.of(scene)
+    of_each = [plan.density(it.material) for it in by_hand(scene)]
+    of_each += [density_of_packing(scene)] * (len(solids) - len(of_each))
+    area = sum(it.area for it in solids)
+    return (
+        sum(it.area * density for it, density in zip(solids, of_each, strict=True)) / area if area else plan.density()
+    )
 
 
 def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault], warnings: list[str]) -> None:
@@ -313,15 +326,16 @@ def _check_unheld(scene: Scene, scales: Scales, warnings: list[str]) -> None:
     stands = bool(_standing(scene)) or any(it.held for it in scene.polygon)
     if scene.grains is None or isinstance(force, OwnLaw) or stands:
         return
-    share = sum(it.area for it in _free_discs(scene, scene.grains, 1.0)) / (d.width * d.height)
+    solids = _free_discs(scene, scene.grains, 1.0)
+    share, heavy = sum(it.area for it in solids) / (d.width * d.height), _mean_density(scene, solids)
     for axis, name in enumerate("xy"):
         borne = any(_has_friction(d, side) for side in ENDS[1 - axis])
-        pull = share * (scene.grains.density - scales.density) * scene.gravity[axis]
+        pull = share * (heavy - scales.density) * scene.gravity[axis]
         if not d.periodic[axis] or borne or force[axis] or not pull:
             continue
-        both = scales.density * (1 - share) + scene.grains.density * share
+        both = scales.density * (1 - share) + heavy * share
         wanted = [-pull if k == axis else force[k] for k in range(2)]
-        known = not (scene.clump or scene.polygon or scene.material)  # whose areas or densities differ
+        known = not (scene.clump or scene.polygon)  # whose areas differ
         value = f" = [{wanted[0]:.4g}, {wanted[1]:.4g}]" if known else ""
         warnings.append(
             f"nothing holds the fluid along {name}: it goes with the grains, and both gain {abs(pull) / both:.2g} m/s a"

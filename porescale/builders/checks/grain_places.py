@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from porescale.builders.checks.packing import check_room
 from porescale.builders.checks.rectangle_places import check_rectangles
 from porescale.builders.checks.wall_places import across_walls
+from porescale.builders.initial.contact_laws import density_of_packing
 from porescale.builders.initial.placed import hand_names, packed_count, placed
 from porescale.builders.initial.rectangles import beside
 from porescale.common.core.constants import EDGE
@@ -198,9 +199,14 @@ def _check_settling(scene: Scene, faults: list[Fault]) -> None:
         problem, repair = "a packing settles straight down", f"give [0, -9.81], {otherwise}"
         allowed = f"[any, {-WEAK:g} or below]"
         faults.append(Fault("gravity", f"[{gx:g}, {gy:g}]", problem, "m/s^2", allowed, repair))
-    if scene.grains.density <= fluid_density:
+    density = density_of_packing(scene)
+    if density <= fluid_density:
         problem, repair = "the grains do not sink, so they do not settle", f"make them heavier, {otherwise}"
-        faults.append(Fault("grains.density", scene.grains.density, problem, "kg/m^3", f"> {fluid_density:g}", repair))
+        names = [it.name for it in scene.material]
+        k = names.index(packing.material) if packing.material in names else 0
+        own = bool(names) and scene.material[k].density is not None
+        key = f"material[{k}].density" if own else "grains.density"
+        faults.append(Fault(key, density, problem, "kg/m^3", f"> {fluid_density:g}", repair))
     if domain.periodic[1]:
         repair = f"give the box a bottom, {otherwise}"
         faults.append(Fault("domain.bottom", domain.bottom.kind, "there is no floor to settle on", repair=repair))

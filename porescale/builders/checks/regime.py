@@ -26,7 +26,7 @@ from porescale.builders.checks.limits import (
 from porescale.builders.checks.own_laws import inflow_peak
 from porescale.builders.checks.sound import check_gate, check_inflows, check_pistons, check_sound, check_start
 from porescale.builders.initial.clumps import least_density
-from porescale.builders.initial.contact_laws import MaterialPlan, law_class
+from porescale.builders.initial.contact_laws import MaterialPlan, densities_of_bodies, density_of_packing, law_class
 from porescale.builders.initial.fluid_options import collision_options, weight_of
 from porescale.builders.initial.frames import Placed
 from porescale.builders.initial.placed import by_hand, controls_by_hand
@@ -68,7 +68,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
         packing, free = scene.grains.packing, grain_speed(scene, scales, sizes, frames)
         if scales and packing:
             height = column_height(packing, scene.gravity)
-            driving = abs(scene.grains.density / scales.density - 1) * math.hypot(*scene.gravity)
+            driving = abs(density_of_packing(scene) / scales.density - 1) * math.hypot(*scene.gravity)
             free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * height))
         speed = max(speed, free)
     if scene.fluid and scales:
@@ -85,15 +85,17 @@ def grain_speed(
     already, since it has settled or was compressed, does not count.
     """
     assert scene.grains
-    g, density = math.hypot(*scene.gravity), scene.grains.density
-    given = [math.hypot(*it.velocity) + abs(it.spin) * it.diameter / 2 for it in by_hand(scene)]
-    lighter = 1 - scales.density / density if scales else 1.0
-    reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0, frames, lying=not impact)
-    reach = max(0.0, reach - sizes[0] / 2) if impact else reach
-    free = abs(lighter) * g * scene.time.end if unending else math.sqrt(2 * abs(lighter) * g * reach)
-    if scales:
-        free = min(free, terminal_speed(sizes[2], abs(density / scales.density - 1) * g, scales.viscosity))
-    return max([free, *given])
+    g = math.hypot(*scene.gravity)
+    speeds = [math.hypot(*it.velocity) + abs(it.spin) * it.diameter / 2 for it in by_hand(scene)]
+    for density in densities_of_bodies(scene):
+        lighter = 1 - scales.density / density if scales else 1.0
+        reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0, frames, lying=not impact)
+        reach = max(0.0, reach - sizes[0] / 2) if impact else reach
+        free = abs(lighter) * g * scene.time.end if unending else math.sqrt(2 * abs(lighter) * g * reach)
+        if scales:
+            free = min(free, terminal_speed(sizes[2], abs(density / scales.density - 1) * g, scales.viscosity))
+        speeds.append(free)
+    return max(speeds)
 
 
 def given_speed(scene: Scene) -> float:
@@ -181,15 +183,16 @@ def too_soft(
     """A warning where grains fall so fast that a contact is pressed as deep as where a run stops; "" where not.
 
     laws : of two grains, and of a grain and a wall, of the smallest grains, for which Hertz's law is deepest over the
-    radius.  A linear dashpot with the damping ratio h leaves exp(-h arccos(h)/sqrt(1 - h²)) of the overlap; a user's
-    law is integrated with its damping.  A fall without an end is a bound that hardly anything reaches: left out.
+    radius, at the largest density.  A linear dashpot with the damping ratio h leaves exp(-h arccos(h)/sqrt(1 - h²)) of
+    the overlap; a user's law is integrated with its damping.  A fall without an end is a bound that hardly anything
+    reaches: left out.
     """
     assert scene.grains
     assert scene.contact
     if fall(scene, 1.0, frames)[1]:
         return ""
     speed, radius = grain_speed(scene, scales, sizes, frames, impact=True), sizes[0] / 2
-    mass, stiffer, limit = math.pi * radius**2 * scene.grains.density, 0.0, WORST_OVERLAP * radius
+    mass, stiffer, limit = math.pi * radius**2 * densities_of_bodies(scene)[-1], 0.0, WORST_OVERLAP * radius
     deepest = 0.0
     for law, share in zip(laws, (0.5, 1.0), strict=True):  # reduced mass and radius are half of a grain's own, or these
         depth, power = law.impact(share * mass, share * radius, speed) if speed > 0.0 else (0.0, 1.0)
@@ -284,7 +287,7 @@ def check_regime(
             "hydraulic_radius_ratio = 1 seals a two-dimensional bed at rest, since its pores do not connect: "
             "it breaches at a rate set by numerical leak; 0.7 to 0.9 opens them"
         )
-    weight = abs(scene.grains.density - scales.density) * math.hypot(*scene.gravity) * packing.packing_fraction
+    weight = abs(density_of_packing(scene) - scales.density) * math.hypot(*scene.gravity) * packing.packing_fraction
     return _check_pore_pressure(weight, column_height(packing, scene.gravity), scales, faults, warnings)
 
 

@@ -1,6 +1,7 @@
 """What compressibility does to a scene beside its Mach number: motion that sound does not keep up with, pistons and
 inflows that start at once, and the suction below a gate that rises along grains."""
 
+import itertools
 import math
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -62,11 +63,19 @@ def rates(scene: Scene, step: float) -> Iterator[tuple[str, float]]:
     for k, it in enumerate(scene.disc):
         yield f"disc {k} swings", max(rate_of(it.velocity_x), rate_of(it.velocity_y))
     for k, control in enumerate(scene.control):
-        given = [fn for axis in (control.x, control.y) for fn in (axis.velocity, axis.displacement, axis.force)]
-        yield f"what control {k} moves swings", max(map(rate_of, given))
+        given = [fn for axis in (control.x, control.y) for fn in (axis.velocity, axis.force)]
+        ways = [axis.displacement for axis in (control.x, control.y) if not _one_way(axis.displacement)]
+        yield f"what control {k} moves swings", max(map(rate_of, [*given, *ways]))
     for name in scene.domain.sides:
         yield f"the velocity of the {name} side changes", inflow_rate(scene, name, step)
     yield "fluid.body_force changes", force_rate(scene, step)
+
+
+def _one_way(course: TimeFunction | None) -> bool:
+    """Whether a displacement never turns round: the flow sees its speed, which swings in no other way."""
+    values = course.values if course else ()
+    steps = [b - a for a, b in itertools.pairwise(values)]
+    return bool(steps) and (min(steps) >= 0.0 or max(steps) <= 0.0)
 
 
 def rate_of(course: TimeFunction | None) -> float:

@@ -1,6 +1,7 @@
 """Contact laws from [contact], [[material]] and [[contact.pair]]."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.compiled.own_kernel import kernel_of
@@ -101,3 +102,25 @@ class MaterialPlan:
         law = law_of(contact.numbers(), contact, mass)
         wall = law.with_friction(contact.friction if contact.wall_friction is None else contact.wall_friction)
         return law, wall, [law, wall]
+
+
+def density_of_packing(scene: Scene) -> float:
+    """Density of the grains of the packing, kg/m³; without one that of grains that name no material."""
+    assert scene.grains
+    packing = scene.grains.packing
+    return MaterialPlan.of(scene).density(packing.material if packing else "")
+
+
+def densities_of_bodies(scene: Scene) -> list[float]:
+    """Densities that free bodies have of their own or of the material that they name, kg/m³, ascending."""
+    assert scene.grains
+    grains, plan = scene.grains, MaterialPlan.of(scene)
+    bodies: list[Any] = [
+        *grains.grain,
+        *scene.clump,
+        *scene.segment,
+        *scene.polygon,
+        *([grains.packing] if grains.packing else []),
+    ]
+    own = {getattr(it, "density", None) or plan.density(it.material) for it in bodies}
+    return sorted(own or {plan.density()})

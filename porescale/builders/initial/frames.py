@@ -20,6 +20,7 @@ from porescale.common.core.types import Floats
 from porescale.common.schema.names import names_of
 from porescale.dem.bodies.clumps import Body, shares
 from porescale.dem.bodies.frames import Frame, add_frames, chain, corner_discs, framed, from_ends, polygon, skin_of
+from porescale.dem.bodies.rigid import clumps_of
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
@@ -231,10 +232,23 @@ def plates_of(grains: Grains) -> tuple[ClumpNumber, ClumpNumber]:
 
 
 def free_rows(grains: Grains, placed: Sequence[Placed], held: int) -> NDArray[np.int64]:
-    """Rows of the discs that are grains: all but the last ``held`` discs, and corners of frames that forces move."""
+    """Rows of the discs that are grains: all but the last ``held`` discs and what is controlled in all components, and
+    corners of frames that forces move."""
     discs = disc_count(grains)
     owner = np.repeat([it.free for it in placed], [len(it.frame.corners) for it in placed])
-    return np.concatenate((np.arange(discs - held), discs + np.flatnonzero(owner)))
+    moved = np.flatnonzero(~without_force(grains)[: discs - held])
+    return np.concatenate((moved, discs + np.flatnonzero(owner)))
+
+
+def without_force(grains: Grains) -> NDArray[np.bool_]:
+    """Which discs (n,) no force moves, since each component of theirs, or of their clump, is held or prescribed."""
+    still: NDArray[np.bool_] = np.zeros(grains.discs.count, bool)
+    if len(grains.held):
+        still |= grains.held.all(axis=1)
+    clumps = clumps_of(grains)
+    if clumps is not None:
+        still[clumps.member] = np.repeat(clumps.held.all(axis=1), np.diff(clumps.start))
+    return still
 
 
 def lightest_frame(placed: Sequence[Placed], every: list[ContactLaw], radius: float | None) -> float | None:

@@ -11,7 +11,7 @@ from porescale.builders.checks.grain_places import held_alone, require_apart
 from porescale.builders.checks.rectangle_places import require_free_of_rectangles
 from porescale.builders.derive import Derived, grain_count
 from porescale.builders.initial.apply_sections import apply_sections, names_of
-from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.initial.contact_laws import MaterialPlan, density_of_packing
 from porescale.builders.initial.frames import Placed, placed_frames, with_corners
 from porescale.builders.initial.obstacles import obstacles_of, rectangles_around
 from porescale.builders.initial.packing import by_packing, compressed, drawn_radii, radii_of, say_void_ratio
@@ -89,7 +89,7 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed], *, hasty: bo
         grains = _with_parts(grains, around, parts)
     elif scene.grains and packing and packing.compress and not hasty:
         with doing(PRESSING, settling_seconds(packing, derived.grain_count)):
-            grains = compressed(packing, scene.grains.density, scene.domain.periodic, law, around).grains
+            grains = compressed(packing, density_of_packing(scene), scene.domain.periodic, law, around).grains
         if around:
             say_void_ratio(packing, grains, around)
         grains = _with_parts(grains, around, parts)
@@ -97,7 +97,7 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed], *, hasty: bo
     else:
         if packing:
             discs_of = _in_rows if hasty else _placed
-            parts = [discs_of(packing, MaterialPlan.of(scene).density(packing.material), around), *parts]
+            parts = [discs_of(packing, density_of_packing(scene), around), *parts]
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
         if packing and around and not hasty:
             say_void_ratio(packing, grains, around)
@@ -192,7 +192,7 @@ def _pile(scene: Scene, packing: Packing) -> Pile:
     placed, radii = len(by_hand(scene)) + len(scene.disc), radii_of(packing)
     return Pile(
         corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
-        diameter=packing.diameter, density=MaterialPlan.of(scene).density(packing.material), spread=packing.size_spread,
+        diameter=packing.diameter, density=density_of_packing(scene), spread=packing.size_spread,
         friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
         given=() if radii is None else tuple(radii.tolist()), rolling=packing.settling_rolling_friction,
     )  # fmt: skip

@@ -59,9 +59,8 @@ class GrainInstruments(Part):
         self.contacts, self.coarse_graining = scene.output.contacts, scene.coarse_graining
         named = zip(names_of(scene.region, "region"), scene.region, strict=True)
         self.regions = [(name, Region(it.lower, it.upper)) for name, it in named]
-        self.held = np.arange(grains.discs.count) >= grains.discs.count - system.held
-        if grains.segments is not None:
-            self.held = ~np.isin(np.arange(grains.discs.count), free_rows(grains, placed, system.held))
+        self.held = ~np.isin(np.arange(grains.discs.count), free_rows(grains, placed, system.held))
+        self.held_discs = range(disc_count(grains) - system.held, disc_count(grains))
         friction = max(law.friction for law in grains.laws)
         self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
         self.first = ratio_column(scene.grains)
@@ -113,8 +112,7 @@ class GrainInstruments(Part):
             fx, fy, moment = on_surface(within if name in SIDES else found, name, middle)
             row |= {f"{shown} force x (N/m)": fx, f"{shown} force y (N/m)": fy, f"{shown} moment (N m/m)": moment}
         row |= walls.row(grains)
-        discs = np.flatnonzero(self.held[: disc_count(grains)]).tolist()
-        for k, (fx, fy, moment) in enumerate(on_discs(found, grains.discs, discs)):
+        for k, (fx, fy, moment) in enumerate(on_discs(found, grains.discs, list(self.held_discs))):
             row |= {f"disc {k} force x (N/m)": float(fx), f"disc {k} force y (N/m)": float(fy),
                     f"disc {k} moment (N m/m)": float(moment)}  # fmt: skip
         return row
@@ -217,9 +215,9 @@ def region_row(
 
     A region stays where it is, also in a strained cell, whose images are measured wherever they reach into it.
     Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it; polygons
-    (``placed``) take their exact area, and move with their corners; held ones have no mass;
-    coordination and rattlers are of discs and clumps whose centre is inside, held ones left out; fabric and forces of
-    contacts whose point is inside.
+    (``placed``) take their exact area, and move with their corners; held ones, and those that are controlled in all
+    components, have no mass; coordination and rattlers are of discs and clumps whose centre is inside, without these;
+    fabric and forces of contacts whose point is inside.
 
     porosity () : share of the region that is no grain
     void ratio () : pores over grains

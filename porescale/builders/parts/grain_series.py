@@ -19,21 +19,22 @@ class GrainSeries(Part):
 
     The front is the foremost edge of any grain on the side to which the packing can flow: left if it starts right of
     the middle of the box, right otherwise.  Run-out is how far the front has come since the start.  Discs that are held
-    come after the grains and are none of them, nor are frames whose motion is prescribed (``placed``).
+    come after the grains and are none of them, nor are bodies whose motion is prescribed in all components.
     """
 
     def __init__(self, system: System) -> None:
         assert system.grains
         self.grains, self.held, self.placed = system.grains, system.held, system.frames
-        self.rows: slice | NDArray[np.int64] = slice(self.grains.discs.count - self.held)
-        if self.placed:
-            self.rows = free_rows(self.grains, self.placed, self.held)
+        self.rows: slice | NDArray[np.int64] = free_rows(self.grains, self.placed, self.held)
+        self.alone = len(self.rows) == self.grains.discs.count - self.held
+        if self.alone:  # a view, where all others are grains
+            self.rows = slice(self.grains.discs.count - self.held)
         middle = 0.5 * system.scene.domain.width
         self.leftward = bool(centre_of_mass(self.free())[0] > middle)
         self.start = self.front()
 
     def free(self) -> Discs:
-        """The grains without the discs that are held; views where there are no frames."""
+        """The grains without what is held or moved as prescribed; views where there is no such thing but held discs."""
         return Discs(*(getattr(self.grains.discs, name)[self.rows] for name in FIELDS))
 
     def front(self) -> float:
@@ -70,7 +71,7 @@ class GrainSeries(Part):
 
     def coordination(self) -> float:
         """Mean number of other bodies that touch one."""
-        if not self.placed:
+        if self.alone and not self.placed:
             return coordination(self.grains)
         return coordination_of_bodies(self.grains, self.placed, self.held)
 

@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from numbers import Integral
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import numpy as np
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from porescale.common.duration.quiet import Moment
     from porescale.common.record.part import Part
     from porescale.common.record.progress import Watch
+
+P = TypeVar("P", bound="Part")
 
 FILES = ("series", *(name.removesuffix(".csv") for name in MADE_LATER if name.endswith(".csv")))
 """Tables that a run writes anyway."""
@@ -123,6 +125,19 @@ class BaseSimulation(ABC):
     def velocities(self) -> Floats:
         """Velocities of the grains or particles, (n, 2) m/s, in the order of `positions`; a copy."""
         return self.motion()[1].copy()
+
+    def part(self, kind: type[P]) -> P:
+        """The first part of this class; InputError, with those that there are, where the scene builds none."""
+        found = self._part_or_none(kind)
+        if found is None:
+            built = ", ".join(dict.fromkeys(type(part).__name__ for part in self.parts))
+            name = kind.__name__ if isinstance(kind, type) else repr(kind)
+            raise InputError(Fault("part", name, "is not built by this scene", allowed=built))
+        return found
+
+    def _part_or_none(self, kind: type[P]) -> P | None:
+        """The first part of this class, if there is one."""
+        return next((part for part in self.parts if isinstance(kind, type) and isinstance(part, kind)), None)
 
     @property
     def name(self) -> str:

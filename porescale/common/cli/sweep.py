@@ -68,13 +68,14 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.record.series import run_table
         from porescale.common.studies import ensemble_files, sweep_files
         from porescale.common.studies.ensemble import Repeats, ensembles, repeated
+        from porescale.common.studies.parameter_table import varied
         from porescale.common.studies.runner import Campaign
 
         start = require_scene(scene, package.name)
         asked = Repeats(repeat, over)
         points = chosen_points(table, vary or (), asked)
-        combined = "--vary" if vary and table is None else ""
-        file, name = check_points(package, start, points, quality, settings or (), combined)
+        combined, each = "--vary" if vary else "", len(varied(vary)) if vary and table else 0
+        file, name = check_points(package, start, points, quality, settings or (), combined, each)
         if asked:
             points = repeated(package, start, points, asked, quality, settings or ())
             check_points(package, start, points, quality, settings or ())

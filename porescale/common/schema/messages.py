@@ -102,7 +102,8 @@ def _fault(
         count, least = context["actual_length"], context["min_length"]
         return Fault(name, None, f"holds {count} of the {least} that it needs", repair=f"add [[{name}]] ({help})")
     if kind == "extra_forbidden":
-        what = "section" if isinstance(value, dict | list) else "key"
+        tables = value if isinstance(value, list) and value else [value]
+        what = "section" if all(isinstance(it, dict) for it in tables) else "key"
         return Fault(name, shown, f"unknown {what}", repair=_suggestion(str(key[-1]), owners, root))
     if kind in ("literal_error", "enum"):
         allowed = str(context["expected"])

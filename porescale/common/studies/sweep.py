@@ -83,17 +83,19 @@ def check_points(
     quality: str | None,
     settings: Sequence[str],
     vary: str = "",
+    each: int = 0,
 ) -> tuple[Path, str]:
     """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs.
 
-    vary : what messages call the options of which the points are all combinations: none of them is another's scene.
+    vary : what messages call the options of which the points are all combinations: none of them is another's scene;
+    each : so many points follow one another for each row of a table, whose rows may say what they want (0: no table).
     """
     from porescale.common.schema.scene_file import find
     from porescale.common.schema.sections import load
 
     faults: dict[str, Fault] = {}  # by what they say: what is wrong with every point is said of the first
-    first: dict[bytes, Point] = {}
-    for point in points:
+    first: dict[tuple[int, bytes], Point] = {}
+    for at, point in enumerate(points):
         try:
             overrides = (*settings, *point.settings)
             read = load(scene, program.scene(), quality=point.quality or quality, overrides=overrides)
@@ -103,7 +105,8 @@ def check_points(
                 place = f"{point.name}, {fault.file}" if fault.file else point.name
                 faults.setdefault(fault.line(), replace(fault, file=place))
             continue
-        if vary and (same := first.setdefault(_digest(read, point), point)) is not point:
+        row = at // each if each else 0
+        if vary and (same := first.setdefault((row, _digest(read, point)), point)) is not point:
             fault = _twice(same, point)
             faults.setdefault(fault.line(), replace(fault, file=vary))
     if faults:

@@ -10,7 +10,7 @@ from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.bodies.clumps import Clumps
 from porescale.dem.discs import Discs, overwrite
 from porescale.dem.motion import affine_strain as cells
-from porescale.dem.motion.control import KINDS, PUSH, WORK, Control, schedule_of
+from porescale.dem.motion.control import KINDS, PUSH, SUPPLY, WORK, Control, schedule_of
 from porescale.dem.motion.periodic_cell import LOAD, Still, Straining
 from porescale.dem.motion.rigid_and_driven import FIRST_CONTROL, DriverArrays
 from porescale.dem.motion.time_function import Schedule, schedule_rows
@@ -59,6 +59,10 @@ class Drivers:
         """Work of controls so far, J/m: (by displacement, by force); that of a control that was replaced is dropped."""
         pushes = np.array([KINDS[type(row[3])] == PUSH for row in self._controls], bool)
         return float(self._given[~pushes, WORK].sum()), float(self._given[pushes, WORK].sum())
+
+    def means(self) -> list[Floats]:
+        """Views of the means over the steps of the last call: loads of watched bodies, and what controls gave."""
+        return [self._watched_load, self._given[:, SUPPLY]]
 
     def watch(self, *bodies: int | Clump) -> None:
         """Keep the record of these bodies and no others; displacements count from now."""

@@ -48,8 +48,8 @@ class Sleep:
     """Sleeping discs of ``grains``.
 
     weight (n,) N/m: what a disc's share is of, its weight or that less its lift;  share : of it;  after : s, by default
-    100 oscillations of the hardest contact.  A disc rests below the speed  v = share sqrt(W r/m):  what is taken of its
-    energy is at most share² W r, what lifts it by that share² of its radius.
+    100 oscillations of the smallest disc on its hardest contact.  A disc rests below the speed  v = share sqrt(W r/m):
+    what is taken of its energy is at most share² W r, what lifts it by that share² of its radius.
     asleep (n,) uint8;  removed (n,) J/m, kinetic energy taken so far.  Call ``wake_all`` or ``wake_disc`` before
     changing discs by hand.  Raises InputError where there is more than discs.
     """
@@ -57,10 +57,11 @@ class Sleep:
     def __init__(self, grains: State, weight: Floats, share: float = 0.01, after: float | None = None) -> None:
         if grains.steered or grains.segments is not None or grains.bonds is not None or grains.reach is not None:
             raise InputError(Fault("sleep", None, "is for free discs only", repair="leave it out"))
-        count, stiffness = grains.discs.count, grains.stiffest_contact()[0]
+        count, smallest = grains.discs.count, float(grains.discs.radius.min(initial=0.0))
         self.allowed = share * np.abs(weight)
         self.speed = share * np.sqrt(np.abs(weight) * grains.discs.radius / grains.discs.mass)
         lightest = float(grains.discs.mass.min(initial=np.inf))
+        stiffness = max(law.stiffest(lightest, smallest).stiffness[0] for law in grains.laws)
         self.after = AFTER * np.pi * float(np.sqrt(lightest / stiffness)) if after is None else after
         self.asleep, self.called = np.zeros(count, np.uint8), np.zeros(count, np.uint8)
         self.quiet, self.removed = np.zeros(count), np.zeros(count)

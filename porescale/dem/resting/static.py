@@ -106,5 +106,4 @@ def leave_out(grains: State, last: StaticState, dt: float, count: int, drag: flo
         return False
     grains.steps += count
     grains.steps_of_dt += count
-    grains.last_count = count
     return True

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
-from porescale.common.record.model import Grid, Snapshot
+from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.common.record.open_run import Run
 from porescale.piv.images.flows import NO_DISCS, Discs
 
@@ -22,7 +22,7 @@ class Instant:
     """One snapshot, made ready.
 
     velocity : spline coefficients of u, v (2, ny, nx), m/s;  solid : solid fraction (ny, nx) of what is no grain;
-    grains : discs, m;
+    grains : discs, m;  motion : their velocities (n, 2) m/s;
     origin, spacing : of the cells, m;  time : s.
     """
 
@@ -30,6 +30,7 @@ class Instant:
     velocity: Floats
     solid: Floats
     grains: Discs
+    motion: Floats
     origin: tuple[float, float]
     spacing: tuple[float, float]
 
@@ -50,11 +51,17 @@ class Instant:
 
 
 class Between:
-    """Two snapshots and what is between them, straight in time: velocity, and grains on their way."""
+    """Two snapshots and what is between them, straight in time: velocity, and grains on their way.
+
+    A grain whose way fits the mean of its two velocities better if it is a whole picture longer or shorter has crossed
+    a periodic side: it leaves at one side and comes in at the other.
+    """
 
     def __init__(self, first: Instant, second: Instant) -> None:
         self.first, self.second = first, second
         self.same = len(first.grains.x) == len(second.grains.x)
+        self._way, self._round = ways(first, second) if self.same else (np.zeros((0, 2)), np.zeros((0, 2)))
+        self._crossing = np.flatnonzero(self._round.any(axis=1))
 
     def share(self, time: float) -> float:
         """How far ``time`` is from the first to the second, 0 to 1."""
@@ -72,8 +79,14 @@ class Between:
         s = self.share(time)
         if not self.same:
             return (self.first if s < 0.5 else self.second).grains
-        one, two = self.first.grains, self.second.grains
-        return Discs(one.x + s * (two.x - one.x), one.y + s * (two.y - one.y), one.radius)
+        one, over = self.first.grains, self._crossing
+        x, y = one.x + s * self._way[:, 0], one.y + s * self._way[:, 1]
+        if not len(over):
+            return Discs(x, y, one.radius)
+        again = self._round[over]
+        return Discs(
+            np.r_[x, x[over] - again[:, 0]], np.r_[y, y[over] - again[:, 1]], np.r_[one.radius, one.radius[over]]
+        )
 
     def solid_at(self, x: Floats, y: Floats, time: float) -> NDArray[np.bool_]:
         """Whether points lie in grains, or in other solids of the nearer snapshot."""
@@ -105,13 +118,24 @@ class Between:
         return x, y
 
 
+def ways(first: Instant, second: Instant) -> tuple[Floats, Floats]:
+    """How far each grain goes from one snapshot to the next (n, 2) m, and what of it is a whole picture (n, 2) m."""
+    one, two = first.grains, second.grains
+    straight = np.column_stack([two.x - one.x, two.y - one.y])
+    expected = 0.5 * (first.motion + second.motion) * (second.time - first.time)
+    rows, columns = first.solid.shape
+    picture = np.array([columns * first.spacing[0], rows * first.spacing[1]])
+    crossed = np.clip(np.rint((expected - straight) / picture), -1, 1) * picture
+    return straight + crossed, crossed
+
+
 def instant(snapshot: Snapshot, folder: str) -> Instant:
     """A snapshot made ready; InputError for a run without a fluid."""
     grid = velocity_grid(snapshot, folder)
     velocity = np.asarray(grid.cells["velocity"], float)
     filtered = np.stack([spline_filter(velocity[..., k], 3, mode="nearest") for k in (0, 1)])
     solid = np.array(grid.cells.get("solid_fraction", np.zeros(grid.shape)), float)
-    grains = grains_of(snapshot)
+    grains, motion = grains_of(snapshot), motion_of(snapshot)
     rows, columns = np.nonzero(solid > 0)
     if len(rows) and len(grains.x):
         x = np.asarray(grid.origin[0] + (columns + 0.5) * grid.spacing[0], float)
@@ -119,16 +143,29 @@ def instant(snapshot: Snapshot, folder: str) -> Instant:
         far, which = nearest(x, y, grains)
         own = far < grains.radius[which] + 1.5 * max(grid.spacing)
         solid[rows[own], columns[own]] = 0
-    return Instant(snapshot.time, filtered, solid, grains, grid.origin, grid.spacing)
+    return Instant(snapshot.time, filtered, solid, grains, motion, grid.origin, grid.spacing)
 
 
 def grains_of(snapshot: Snapshot) -> Discs:
     """The discs of a snapshot, m."""
-    for cloud in snapshot.clouds.values():
-        if "radius" in cloud.data:
-            at = np.asarray(cloud.position, float)
-            return Discs(at[:, 0].copy(), at[:, 1].copy(), np.asarray(cloud.data["radius"], float))
+    for cloud in _discs_of(snapshot):
+        at = np.asarray(cloud.position, float)
+        return Discs(at[:, 0].copy(), at[:, 1].copy(), np.asarray(cloud.data["radius"], float))
     return NO_DISCS
+
+
+def motion_of(snapshot: Snapshot) -> Floats:
+    """Velocities (n, 2) m/s of the discs of a snapshot, 0 where it has none."""
+    for cloud in _discs_of(snapshot):
+        if "velocity" in cloud.data:
+            return np.array(cloud.data["velocity"], float)[:, :2]
+        return np.zeros((len(cloud.position), 2))
+    return np.zeros((0, 2))
+
+
+def _discs_of(snapshot: Snapshot) -> list[Cloud]:
+    """The clouds of a snapshot that are discs; the first counts."""
+    return [cloud for cloud in snapshot.clouds.values() if "radius" in cloud.data]
 
 
 def pushed_out(x: Floats, y: Floats, grains: Discs) -> tuple[Floats, Floats]:

@@ -13,6 +13,8 @@ BODIES = ("grain", "clump", "segment", "polygon")
 class Controlled(Section):
     """Control of one body: each of x, y, rotation "free", or with a prescribed velocity, displacement or force.
 
+    A body with a prescribed velocity or displacement in all three is none of the grains that series.csv, regions and
+    coarse graining are of, as a held disc is none; it is solid.
     record = true: force and displacement in control.csv; what a control gives is what contacts, weight and fluid take.
     """
 

@@ -185,6 +185,13 @@ def test_checks_across_keys_join_the_list(write) -> None:
     assert "fluid.spacing = 0.5 m: is larger than the domain" in line
 
 
+def test_a_list_of_values_is_an_unknown_key_and_tables_are_an_unknown_section(write) -> None:
+    (line,) = lines(write(f"lower = [0, 1]\n{GOOD}"))
+    assert "lower: unknown key" in line
+    (line,) = lines(write(f"{GOOD}\n[[lowest]]\nx = 1"))
+    assert "lowest: unknown section" in line
+
+
 def test_a_wrong_shape_is_named(write) -> None:
     found = lines(write("fluid = 3\nsize = [1]\n[clock]\nduration = 1\n[grains]\n[quality]\ndraft = 3"))
     assert [line.split("scene.toml: ")[1].split(";")[0] for line in found] == [

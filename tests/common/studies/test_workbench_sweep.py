@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from porescale.common.cli.sweep import check_points, expected
+from porescale.common.cli.sweep import check_points, command, expected
 from porescale.common.core.errors import InputError
 from porescale.common.record.series import run_table
 from porescale.common.studies import sweep, sweep_files
@@ -166,6 +166,19 @@ def test_two_ways_to_write_a_value_are_one_point(tmp_path):
     assert lines == ["--vary: decay.rate = '120 1/min': is 2, which is given, too; leave one out"]
     check_points(TOY, tmp_path, points, None, ())  # rows of a table may say what they want
     check_points(TOY, tmp_path, varied(["decay.rate=2,121 1/min"]), None, (), "--vary")
+
+
+def test_two_ways_to_write_a_value_are_one_point_beside_a_table_too(tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    table = tmp_path / "t.csv"
+    table.write_text("decay.start\n1\n1\n4\n")  # two rows are the same, as they may be
+    sweep_toy = command(TOY)
+    with pytest.raises(InputError) as caught:
+        sweep_toy(tmp_path, table, vary=["decay.rate=2,120 1/min"], out=tmp_path / "out")
+    lines = [fault.line() for fault in caught.value.faults]
+    assert lines == ["--vary: decay.rate = '120 1/min': is 2, which is given, too; leave one out"]
+    points = crossed(read_points(table), varied(["decay.rate=2,121 1/min"]))
+    check_points(TOY, tmp_path, points, None, (), "--vary", 2)  # the check that must fail
 
 
 def test_finished_points_are_left_alone_and_begun_ones_resume(tmp_path):

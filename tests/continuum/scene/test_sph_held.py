@@ -6,7 +6,7 @@ import pytest
 from continuum_sph.builders.parts.held_soil import HeldSoilPart
 from continuum_sph.builders.parts.mixture import MixturePart, WetSoilPart
 from continuum_sph.builders.parts.pore_water import water_counts
-from continuum_sph.builders.parts.soil import soil_particles
+from continuum_sph.builders.parts.soil import SoilPart, soil_particles
 from continuum_sph.builders.parts.stiffness import sound_speed
 from continuum_sph.builders.report import report
 from continuum_sph.builders.reports.time_report import OPENING, PORE_WATER, step_seconds
@@ -42,6 +42,10 @@ def test_held_ground_stays_and_water_enters_it():
     model.advance(150)
     model.check()
     assert np.array_equal(model.part(HeldSoilPart).motion()[0], x)
+    with pytest.raises(InputError, match=r"part = 'SoilPart': is not built by this scene \(allowed: .*HeldSoilPart"):
+        model.part(SoilPart)
+    with pytest.raises(InputError, match=r"part = .*SoilPart.*is not built"):
+        model.part("SoilPart")
     row = model.series()
     assert not any(name.startswith("soil: ") for name in row)
     assert row["front (m)"] > before  # of the water: its face is that of the soil at the start

@@ -114,6 +114,21 @@ def test_check_says_how_high_water_is_drawn_and_how_soon():
     assert f"{fringe:.4g}"[:5] in text
 
 
+@pytest.mark.parametrize(("permeability", "sound"), [(1e-3, 75.0), (1e-2, 120.0), (1e-1, 120.0)])
+def test_check_counts_the_stages_that_the_flow_of_water_takes(permeability, sound):
+    """It told them for each half of a step, by a rate that was too large on a lattice with h of more than a spacing and
+    with a whole step in place of a half: 12.8 of 10, 43 of 26 stages."""
+    full = scene(SUCTION | {"water_table": 0.4}, soil={"permeability": permeability}, water={"sound_speed": sound})
+    found = {row.name: row.value for group in report(full).groups.values() for row in group}
+    run = Simulation(full)
+    run.advance(10)
+    longer = run.step_seconds / found["longest step for sound in soil that cannot drain"]
+    assert 1.0 <= longer < 1.15  # of which half, by its root, may be in the stages
+    # A stage more for each half where the number has to be odd, and for its edge.
+    assert run.flow.stages / run.step == pytest.approx(found["stages of flow in a step"], rel=0.075, abs=2.0)
+    assert found["stages of flow in a step"] % 4 == 2
+
+
 @pytest.mark.parametrize("exponent", [0.0, 0.5])
 def test_check_holds_the_water_against_soil_as_stiff_as_its_weight_makes_it(exponent):
     """With an exponent it was held against soil at the reference stress, and the step was that of such soil."""

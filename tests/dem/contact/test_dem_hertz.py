@@ -82,6 +82,29 @@ def test_the_stable_step_of_hertz_falls_with_the_overlap_it_allows_for():
         packing_limit(law, 1.0)
 
 
+def test_the_stable_step_of_hertz_is_safe_for_a_light_disc_that_is_not_the_smallest():
+    # Stiffness goes with the radius, so the limit with the root of mass over radius: here that of the large disc.
+    law = Hertz(1e8, 0.4e8, 0.2, 0.2)
+    discs = make_discs([[0.01, 0.01], [0.05, 0.03]], [0.01, 0.03], [8000.0, 1000.0])
+    grains = Grains(discs, law, Box((0.0, 0.0), (0.1, 0.1)))
+    each = [packing_limit(law, float(m), float(r)) for m, r in zip(discs.mass, discs.radius, strict=True)]
+    assert each[1] < 0.7 * each[0]  # the check that must fail: the smallest, which is the lightest too
+    assert discs.mass[0] < discs.mass[1]
+    assert grains.stable_step(safety=1.0, steps_per_contact=0.0) == pytest.approx(min(each), rel=1e-12)
+
+
+@pytest.mark.parametrize("small", [0.01, 0.001])
+def test_a_servo_holds_its_load_on_a_large_disc_beside_a_small_one(small):
+    # With the stiffness of the small disc the gain would be too large by 0.01/small, and the wall would bounce.
+    law = Hertz(1e8, 0.4e8, 0.3, 0.3)
+    grains = Grains(make_discs([[0.05, 0.01], [0.02, small]], [0.01, small], 2000.0), law, Box((0.0, 0.0), (0.1, 0.1)))
+    grains.add_wall("lid", (0.05, 0.02), (0.0, -1.0))
+    grains.steering.servo_wall("lid", force=2000.0, speed=1.0)
+    grains.step(grains.stable_step(), count=8000)
+    # After 8000 steps 6e-11 of the start is left; with the gain of a stiffness ten times too small a third was missing.
+    assert abs(grains.wall_force[grains.wall_names.index("lid"), 1]) == pytest.approx(2000.0, rel=1e-6)
+
+
 def test_like_materials_keep_their_own_law_and_unlike_ones_mix():
     laws = Materials({"steel": STEEL, "rubber": RUBBER})
     assert laws.law("steel", "steel") is STEEL

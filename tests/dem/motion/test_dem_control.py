@@ -94,6 +94,21 @@ def test_what_moves_a_disc_supplies_its_acceleration_and_the_force_of_its_contac
     assert row.displacement == (0.0, 0.0, 0.0)
 
 
+def test_a_restored_system_has_the_same_record_of_loads():
+    def pressed_pair():
+        grains = Grains(make_discs([[0.0, 0.0], [0.0199, 0.0]], 0.01, 2000.0), LAW, FREE)
+        grains.steering.control(1, x=Moved(0.0), y=Pushed(3.0))
+        grains.steering.watch(1)
+        return grains
+
+    whole, again = pressed_pair(), pressed_pair()
+    whole.step(DT, count=4)
+    again.restore(whole.state())
+    assert again.steering.record() == whole.steering.record()
+    assert whole.steering.record()[0].supply[1] == pytest.approx(3.0)
+    assert pressed_pair().steering.record() != whole.steering.record()  # the check that must fail
+
+
 def test_the_work_of_a_piston_is_what_the_spring_stores():
     # A disc pushed onto a wall without damping: stored k d^2/2, the force lagging by a step in 1000.
     law = Linear(1e6)
