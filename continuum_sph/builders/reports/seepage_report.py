@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_sph.builders.parts.air import air_report, dry_pores
+from continuum_sph.builders.parts.air import air_pores, air_report
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.pore_water import largest_modulus, pore_law, water_counts
@@ -73,7 +73,7 @@ def seepage_report(scene: Scene) -> Report:
     out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
         step = min(step, moving(scene, out, law, stiff))
-    air = len(dry_pores(scene.water.column, soil)) if scene.air else 0
+    air = len(air_pores(scene, soil))
     if scene.air:
         air_report(out, scene, law, air)
     cost(scene, out, law, step, Counts(len(soil), water + air, waiting))
