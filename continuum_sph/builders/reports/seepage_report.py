@@ -20,6 +20,7 @@ from continuum_sph.builders.reports.soil_report import (
     report_softening,
     report_watched,
     warn_of_heavy_grains,
+    warn_of_rest,
     warn_of_steep_faces,
 )
 from continuum_sph.builders.reports.time_report import MOVING_SOIL, OPENING, PORE_WATER, report_run, step_seconds
@@ -88,6 +89,8 @@ def seepage_report(scene: Scene) -> Report:
     pressure = 0.5 * buoyant * scene.gravity * section.height * (1.0 + material_of(section).rest)
     report_softening(out, section, soil_law(scene), pressure)
     report_rate(out, scene, wet=True)
+    if not section.held:
+        warn_of_rest(out, section, material_of(section), buoyant * scene.gravity * section.height)
     warn_of_steep_faces(scene, out)
     report_origin(out, section.origin)
     if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < STANDS:
