@@ -87,7 +87,7 @@ class Simulation(ShownSimulation):
 
     @property
     def masses(self) -> Floats:
-        """Masses of the particles, (n,) kg per metre of depth; a copy."""
+        """Masses of the particles, (n,) kg per metre of depth, soil with suction and its water together; a copy."""
         return self.shown.masses().copy()
 
     def _sizes(self) -> str:

@@ -72,5 +72,6 @@ def shorter(share: float) -> float:
 
 
 def thickness_at_exit(share: float, rows: float) -> float:
-    """Exit gradient beside a slab one spacing thick over that of the sheet it stands for."""
-    return exit_gradient(max(0.0, share - shorter(share) / rows)) / exit_gradient(share) if share > 0.0 else 1.0
+    """Exit gradient beside a slab one spacing thick over that of the sheet it stands for; its limit, 1, of a sheet that
+    reaches the base, beside which both vanish."""
+    return exit_gradient(max(0.0, share - shorter(share) / rows)) / exit_gradient(share) if 0.0 < share < 1.0 else 1.0

@@ -5,11 +5,13 @@
 with w, p of `retention`, k_r of `conductivity`.  Water m_w of a particle is conserved; its pores are V less the volume
 of its grains, so soil that is compressed raises p, and full pores have the stiffness K_w/n.  Between particles
 
-    dm_i/dt = c ρ_w V_i Σ_j V_j (K_i + K_j) (H_i - H_j) (1/r) W'
+    dm_i/dt = c ρ_w V_i Σ_j V_j k_ij (k_r,i + k_r,j) (H_i - H_j) (1/r) W',   k_ij = 2 k_i k_j/(k_i + k_j)
 
-opposite in a pair (Cleary & Monaghan, J. Comput. Phys. 148 (1999) 227, with the arithmetic mean of K, so that wetting
-goes on into dry soil).  c is the inverse of -Σ V x² (1/r) W' on the lattice, which makes it exact there for quadratic
-H.  H = const stays, whatever the particles' places are: water at rest under its capillary fringe is exact.
+opposite in a pair (Cleary & Monaghan, J. Comput. Phys. 148 (1999) 227). Pieces of ground one after the other add up
+their resistances, so the mean of k is their harmonic one: with the arithmetic one two pieces of 1 : 10 and 1 : 100, 4
+rows each, let 12 % and 37 % too much through. That of k_r is arithmetic, so that wetting goes on into dry soil. c is
+the inverse of -Σ V x² (1/r) W' on the lattice, which makes it exact there for quadratic H. H = const stays, whatever
+the particles' places are: water at rest under its capillary fringe is exact.
 
 Walls and soil that ends let nothing through.  Places outside (`outside`) do: open water has H = its level and no
 resistance, so k_r = 1 there, and the half spacing of it that a pair crosses costs no head; into air water only leaves,
@@ -147,9 +149,13 @@ def flow_rates(state, permeability, near, outer, weight, outer_weight, propertie
         conductance = 0.0
         head = state[i, HEAD]
         own = state[i, CONDUCTIVITY]
+        through = permeability[i]
         for k in range(np.uint64(near.start[i]), np.uint64(near.split[i])):
             j = np.uint64(near.partner[k])
             part = weight[k] * (own + state[j, CONDUCTIVITY])
+            if permeability[j] != through:
+                share = 2.0 / (through + permeability[j])
+                part = weight[k] * (own * (share * permeability[j]) + state[j, CONDUCTIVITY] * (share * through))
             within += part * (state[j, HEAD] - head)
             conductance += part
         taken, given, more = outside_rate(i, state, permeability, outer, outer_weight)

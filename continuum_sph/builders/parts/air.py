@@ -21,6 +21,7 @@ from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.state import P
 from porescale.common.api.report import Report
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
 
@@ -60,6 +61,17 @@ def dry_pores(columns: tuple[Column, ...], soil: Floats) -> Floats:
         x, y = soil[:, 0], soil[:, 1]
         covered |= (x > column.left) & (x < right) & (y > column.bottom) & (y < top)
     return soil[~covered].copy()
+
+
+def air_pores(scene: Scene, soil: Floats) -> Floats:
+    """Places (m, 2) m of the air in pores of ``soil`` (n, 2) m, none without [air]; InputError where it has no room."""
+    if scene.air is None:
+        return np.zeros((0, 2))
+    found = dry_pores(scene.water.column, soil)
+    if not len(found):
+        raise InputError(Fault("air", "given", "has no room: water.column covers all pores of the soil",
+                               repair="lower the water, or take out [air]"))  # fmt: skip
+    return found
 
 
 def specific_weights(material: NDArray[np.int64], law: Law, gravity: float) -> Floats:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from continuum_sph.builders.parts.air import AIR, air_fluid, dry_pores, specific_weights, with_air
+from continuum_sph.builders.parts.air import AIR, air_fluid, air_pores, dry_pores, specific_weights, with_air
 from continuum_sph.builders.parts.faces import pressure_face
 from continuum_sph.builders.parts.held_soil import held_ground
 from continuum_sph.builders.parts.reservoirs import reservoir, spare
@@ -205,7 +205,7 @@ def seepage_flow(scene: Scene, *, hasty: bool = False) -> Seepage:
     margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length
     wet = len(x)
     if scene.air:
-        pores = dry_pores(scene.water.column, skeleton.x)
+        pores = air_pores(scene, skeleton.x)
         x, v = np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores)))
         rho = np.concatenate((rho, np.full(len(pores), scene.air.density)))
     present, top = len(x), height + margin

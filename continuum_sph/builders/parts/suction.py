@@ -214,6 +214,11 @@ class MoistSoilPart(SoilPart):
         super().__init__(scene, flow.ground)
         self.water = water
 
+    def masses(self) -> Floats:
+        """Masses of the soil with the water that it carries, which move as one, (n,) kg/m; a copy."""
+        found: Floats = super().masses() + self.water.flow.water.content[:, CONTENT]
+        return found
+
     def cloud(self) -> Cloud:
         """The soil with what its pores hold."""
         found, pressure = super().cloud(), self.water.flow.water.state[:, PRESSURE]

@@ -61,7 +61,7 @@ class UserForces(Part):
         if isinstance(self.flow, MoistSoil):
             ground = self.flow.ground
             if start:
-                ground.soil.acceleration += self.flow.share[:, None] * force / mass
+                ground.soil.acceleration += force / mass
             else:
                 ground.soil.force += force
         elif isinstance(self.shown, MixturePart):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_sph.builders.parts.air import air_report, dry_pores
+from continuum_sph.builders.parts.air import air_pores, air_report
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.pore_water import pore_law, water_counts
@@ -21,6 +21,7 @@ from continuum_sph.builders.reports.soil_report import (
     report_softening,
     report_watched,
     warn_of_heavy_grains,
+    warn_of_rest,
     warn_of_steep_faces,
 )
 from continuum_sph.builders.reports.time_report import MOVING_SOIL, OPENING, PORE_WATER, report_run, step_seconds
@@ -73,7 +74,7 @@ def seepage_report(scene: Scene) -> Report:
     out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
         step = min(step, moving(scene, out, law, stiff))
-    air = len(dry_pores(scene.water.column, soil)) if scene.air else 0
+    air = len(air_pores(scene, soil))
     if scene.air:
         air_report(out, scene, law, air)
     cost(scene, out, law, step, Counts(len(soil), water + air, waiting))
@@ -88,6 +89,8 @@ def seepage_report(scene: Scene) -> Report:
     pressure = 0.5 * buoyant * scene.gravity * section.height * (1.0 + material_of(section).rest)
     report_softening(out, section, soil_law(scene), pressure)
     report_rate(out, scene, wet=True)
+    if not section.held:
+        warn_of_rest(out, section, material_of(section), buoyant * scene.gravity * section.height)
     warn_of_steep_faces(scene, out)
     report_origin(out, section.origin)
     if scene.time.end / step > STEPS and scene.numerics.smoothing_ratio < STANDS:

@@ -191,3 +191,10 @@ def test_the_density_of_grains_in_place_of_that_of_soil_is_warned_of(pores):
     assert line.startswith("soil.density = 2650 kg/m³ is of grains per whole volume")
     assert "makes grains of 4417 kg/m³" in line
     assert not said(0.6 * 2650.0)
+
+
+@pytest.mark.parametrize(("rest", "warned"), [(0.3, True), (0.35, False), (2.9, False), (3.1, True)])
+def test_check_warns_of_stress_that_wet_ground_cannot_bear(rest, warned):
+    # at 30 degrees ground bears 1/3 to 3 times its upright stress, wet as dry
+    assert warned == any(it.startswith("soil.rest = ") for it in report(scene(soil={"rest": rest})).warnings)
+    assert not any(it.startswith("soil.rest") for it in report(scene(soil={"rest": rest, "held": True})).warnings)

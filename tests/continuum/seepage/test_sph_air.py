@@ -44,6 +44,13 @@ def test_air_is_in_pores_that_no_water_covers():
     assert dry_pores(given.water.column, soil).tolist() == [[0.1, 0.05], [0.19, 0.09]]
 
 
+@pytest.mark.parametrize("asked", [seepage_report, Simulation])
+def test_air_without_room_in_any_pore_is_refused(asked):
+    # the series divided by the volume of no air
+    with pytest.raises(InputError, match=r"air.*: has no room: water\.column covers all pores.*; lower the water"):
+        asked(scene(water={"column": [{"width": 0.2, "height": 0.3}]}))
+
+
 def test_gas_follows_the_law_of_its_section():
     air = scene().air
     assert air_fluid(air).state == AdiabaticGas(10.0, 5e3, 1.403)

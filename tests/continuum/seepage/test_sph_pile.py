@@ -234,6 +234,14 @@ def test_it_is_that_of_the_side_where_water_rises():
     assert beside(pile(0.1), water, head, soil) * THICK == pytest.approx(0.4, rel=1e-12)
 
 
+def test_a_sheet_to_the_base_has_an_exit_gradient():
+    # beside both the sheet and its slab it vanishes there: 0 over 0, whose limit is 1 as cos² of the depth falls
+    assert thickness_at_exit(1.0, 6.0) == 1.0
+    assert thickness_at_exit(1.0 - 1e-6, 6.0) == pytest.approx(1.0, abs=1e-5)
+    water, head, soil = field()
+    assert np.isfinite(beside(pile(0.0), water, head, soil))
+
+
 def test_fewer_than_four_rows_beside_a_pile_give_no_exit_gradient():
     water, head, soil = field()
     assert np.isfinite(beside(pile(0.2), water, head, soil))
