@@ -18,9 +18,7 @@ VALIDATIONS = Validations()
 @functools.cache
 def hydrostatic(seconds: float, gravity_assumed: float = GRAVITY, rows: int = 20) -> tuple[float, float]:
     """A column of 1 m after ``seconds``: largest error of pressure over that at the floor, and fastest over c0."""
-    scene = column_scene(
-        1.0 / rows, tank=(0.5, 1.2), column=(0.5, 1.0), gradient="corrected",
-    )  # fmt: skip
+    scene = column_scene(1.0 / rows, tank=(0.5, 1.2), column=(0.5, 1.0), gradient="corrected")
     flow = run_until(water_flow(scene), seconds)
     layer, tait = flow.layer, flow.law.state
     assert isinstance(tait, Tait)
