@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_sph.builders.parts.phreatic import FIRST, NAME
+from continuum_sph.builders.parts.instruments import MeasuredWater
+from continuum_sph.builders.parts.phreatic import END, FIRST, NAME, SAG, phreatic_row
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.tanks import tank_scene
@@ -99,6 +100,24 @@ def lines(given: DryLevee, times: Sequence[float], step: float = GRID) -> tuple[
         half = inside & (filling > 0.5)
         found.append(np.where(half, high + 0.5 * step, 0.0).max(axis=1))
     return x, np.array(found)
+
+
+def in_strips(given: DryLevee, time: float, x: Floats, line: Floats, spacing: float) -> tuple[float, float]:
+    """(end m, sag) that phreatic.csv would say of water up to a ``line`` (k,) m at places ``x`` (k,) m in the levee,
+    and beside it up to the river at ``time`` (s): strips of 4 ``spacing`` (m) blunt the corner at the slope."""
+    foot, width = given.outline[0][0], given.outline[-1][0] + given.outline[0][0]
+    step, top = 0.25 * spacing, max(y for _, y in given.outline)
+    places, level = np.arange(0.5 * step, width, step), given.level(time)
+    river = (places < 0.5 * width) & (given.ground(places) < level)
+    surface = np.where(river | (places < foot), level, np.interp(places, x, line))
+    points = np.stack(np.meshgrid(places, np.arange(0.5 * step, top, step), indexing="ij"), axis=2)
+    points = points[points[:, :, 1] < surface[:, None]]
+    ratio = 1.05 * given.porosity**-0.5  # of smoothing length, to reach the next row in pores
+    none = np.zeros_like(points)
+    cloud = MeasuredWater(points, none[:, 0] + step**2, none[:, 0], none, ratio * spacing, spacing, width)
+    dense = np.arange(foot, width - foot, step)
+    row = phreatic_row(cloud, np.column_stack((dense, given.ground(dense) - 0.5 * spacing)))
+    return row[END], row[SAG]
 
 
 LEVEE = DryLevee()

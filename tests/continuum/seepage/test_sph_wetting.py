@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from continuum_sph.builders.parts.phreatic import sagging, wetting_line
-from continuum_sph.validation.seepage.wetting import LEVEE, lines
+from continuum_sph.validation.seepage.wetting import LEVEE, in_strips, lines
 
 X = np.linspace(0.0, 1.0, 201)
 BOUSSINESQ = 1.616
@@ -81,3 +81,17 @@ def test_by_darcys_law_the_line_sags_as_long_as_the_river_rises_and_no_longer():
     rising, standing = darcy(5.0, (3.0, 5.0)), darcy(0.1, (5.0, 8.0))
     assert (rising[:, 1] > 0.08).all()
     assert (standing[:, 1] < 0.04).all()  # the check that must fail: a river that stands
+
+
+def test_strips_blunt_the_corner_of_a_line_the_less_the_narrower_they_are():
+    # a line that falls at 1 : 2 from half of the river's height on, which it drops to where the river meets the slope
+    time, x = 5.0, np.linspace(0.0, 2.16, 2161)
+    level = LEVEE.level(time)
+    edge = 0.3 + 2.0 * level
+    line = np.maximum(0.0, 0.5 * level - 0.5 * (x - edge))
+    exact = 0.25  # mean of the chord level/2, of the line level/4
+    sags = [in_strips(LEVEE, time, x, line, spacing)[1] for spacing in (0.03, 0.015, 0.0075)]
+    assert sags == sorted(sags)
+    # half a strip of four spacings is averaged over at the corner, of a line as long as the river is high
+    assert [exact - sag for sag in sags] == pytest.approx([0.0] * 3, abs=0.5 * exact)
+    assert exact - sags[-1] < 2.0 * 0.0075 / level
