@@ -65,7 +65,8 @@ class DryLevee:
         )  # fmt: skip
 
 
-def lines(given: DryLevee, times: Sequence[float], step: float = GRID) -> tuple[Floats, Floats]:
+@functools.cache
+def lines(given: DryLevee, times: tuple[float, ...], step: float = GRID) -> tuple[Floats, Floats]:
     """(places x (k,) m, heights (len(times), k) m of the water in the levee ``given`` at ``times``, s, by Darcy's law):
     0 where cells are less than half full.  step : of the grid, m.
 
@@ -121,7 +122,7 @@ def in_strips(given: DryLevee, time: float, x: Floats, line: Floats, spacing: fl
 
 
 LEVEE = DryLevee()
-TIMES = (3.0, 4.0, 5.0)  # s: the foot under the slope, and under the crest
+TIMES = (3.0, 4.0)  # s: the foot under the slope, and under the crest
 SPACINGS = (0.03, 0.02, 0.015)  # m
 
 
@@ -156,9 +157,8 @@ def apart(spacing: float, given: DryLevee = LEVEE, times: tuple[float, ...] = TI
 @VALIDATIONS.row(
     "continuum.wetting_line_of_a_levee",
     source="derived: Darcy's law in a levee that a rising river wets, on a grid (`lines`); Maeda & Sakai 2004, fig. 16",
-    because="rows of water in pores are 1/√n spacings apart, and a surface is known to half a row, 0.79 spacings; the "
-    "river's to 0.2",
-    tolerance=0.5 * LEVEE.porosity**-0.5 + 0.2,
+    because="rows of water in pores are 1/√n spacings apart, and a surface is known to half a row, 0.79 spacings",
+    tolerance=0.5 * LEVEE.porosity**-0.5,
     slow=True,
 )
 def line_row() -> Measured:
