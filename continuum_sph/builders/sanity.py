@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.seepage.reservoir import NoneLeftError
 from continuum_sph.water.no_step import no_step
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
@@ -27,9 +28,16 @@ class Now(NamedTuple):
 
 
 def advance_one(advance: Callable[[], object], now: Now) -> None:
-    """Advance one step; raise Unstable when the neighbour search finds a position that is not finite."""
+    """Advance one step; raise Unstable when the neighbour search finds a position that is not finite, or a reservoir
+    has no particles left."""
     try:
         advance()
+    except NoneLeftError as error:
+        raise Unstable(
+            f"the strip of {error.name}", "level", error.level, "m", now.step, now.time,
+            f"no particles are left to bring it to {error.target:g} m: all that fill the tank to its highest level are "
+            "in it; find what drives water out of the strip",
+        ) from error  # fmt: skip
     except ValueError as error:
         if getattr(error, "__notes__", None):  # of a function of the user's
             raise

@@ -18,7 +18,7 @@ from porescale.common.api.shown_simulation import ShownSimulation
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
-from porescale.common.record.part import overrides, restore, row_of, state_of, tables_of
+from porescale.common.record.part import overrides, restore, restoring, row_of, state_of, tables_of
 from porescale.common.schema.sections import scene_as_dict
 
 if TYPE_CHECKING:
@@ -174,6 +174,7 @@ class Simulation(ShownSimulation):
         return state_of(self.parts)
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Go on bit for bit from a state of a simulation of the same scene."""
-        restore(self.parts, state)
-        self._after()
+        """Go on bit for bit from a state of a simulation of the same scene; InputError for another one's."""
+        with restoring():
+            restore(self.parts, state)
+            self._after()

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from itertools import combinations
 from typing import TYPE_CHECKING, Literal
 
 import pydantic
 
 from continuum_sph.scene.bounds import LARGEST, SMALLEST
 from continuum_sph.water.eos.register import offered
+from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Section, quantity
 
 if TYPE_CHECKING:
@@ -27,6 +30,7 @@ class Disc(Section):
 class InclusionSection(Section):
     """A second fluid, in discs within the water: bubbles or drops.
 
+    Discs that overlap are one body of it; with surface tension they are refused, as it starts with σ/R of each disc.
     law : "liquid" (eq. 41), as stiff as the water unless sound_speed is given; gas under the pressure of the air,
     "adiabatic", or "printed" (eqs 39, 40); or another file of `continuum_sph.water.eos`;  surface_tension : σ against
     the water;  cohesion : a of eq. 54 within it.
@@ -41,3 +45,18 @@ class InclusionSection(Section):
     surface_tension: float = quantity("N/m", 0.0, ge=0, le=1e6, help="surface tension against the water")
     cohesion: float = quantity("Pa m^4", 0.0, ge=0, le=1e6, help="a of eq. 54")
     disc: tuple[Disc, ...] = pydantic.Field(min_length=1, description="discs of the second fluid")
+
+    def overlaps(self, slack: float) -> list[Fault]:
+        """Discs that overlap by more than ``slack`` (m), where surface tension gives each a pressure of its own."""
+        found: list[Fault] = []
+        if self.surface_tension == 0.0:
+            return found
+        for (j, other), (i, disc) in combinations(enumerate(self.disc), 2):
+            shared = other.radius + disc.radius - math.hypot(disc.x - other.x, disc.y - other.y)
+            if shared > slack:
+                problem = (
+                    f"overlaps inclusion.disc[{j}] by {shared:.3g} m, and surface tension gives each its own pressure"
+                )
+                found.append(Fault(f"inclusion.disc[{i}]", (disc.x, disc.y), problem, "m",
+                                   repair="move them apart, or give one disc in place of both"))  # fmt: skip
+        return found

@@ -242,6 +242,7 @@ class Scene(SceneBase):
                     Fault("numerics.spacing", self.numerics.spacing, f"leaves {key} fewer than 6 particles across", "m",
                           f"<= {r / 3.0:g}")
                 )  # fmt: skip
+        faults += self.inclusion.overlaps(WHOLE * self.numerics.spacing)
         if self.tank.wall_particles == "images":
             faults.append(Fault("tank.wall_particles", "images", "have the pressure of one fluid only",
                                 repair='use "pressure" with an inclusion'))  # fmt: skip

@@ -129,6 +129,14 @@ def measure_strip(fluid, x, v, mass, material, strip, least, tops, sinking):
     return total, highest
 
 
+class NoneLeftError(Exception):
+    """No particle waits to bring the reservoir ``name`` from its ``level`` (m) to its ``target`` (m)."""
+
+    def __init__(self, name: str, level: float, target: float) -> None:
+        self.name, self.level, self.target = name, level, target
+        super().__init__(f"reservoir {name}: no particles left to bring it from {level:g} to {target:g} m")
+
+
 @dataclass
 class Reservoir:
     """A strip whose water is kept at a level.
@@ -216,7 +224,7 @@ class Supply:
     def keep(self, time: float) -> None:
         """Bring every reservoir to its level of ``time`` (s), between drift and forces of a step.
 
-        Raises ValueError when more water is wanted than there are particles.
+        Raises NoneLeftError when more water is wanted than there are particles.
         """
         layer = self.layer
         for reservoir in self.reservoirs:
@@ -284,7 +292,7 @@ class Supply:
             layer.mass[i] = self.whole
             pool.let_in += self.whole
         if not len(free):
-            raise ValueError(f"reservoir {pool.name}: no particles left to bring it to {target} m")
+            raise NoneLeftError(pool.name, pool.level, target)
         return True
 
     def state(self) -> dict[str, Any]:

@@ -15,7 +15,9 @@ the particles' places are: water at rest under its capillary fringe is exact.
 
 Walls and soil that ends let nothing through.  Places outside (`outside`) do: open water has H = its level and no
 resistance, so k_r = 1 there, and the half spacing of it that a pair crosses costs no head; into air water only leaves,
-with H_i - H_j = p_i/(ρ_w g), where p_i > 0: a seepage face to the first order in the spacing.
+with H_i - H_j = p_i/(ρ_w g), where p_i > 0: a seepage face to the first order in the spacing.  Air over water that a
+piece sees and lies below (y_i < level <= y_j) takes nothing: beside that piece the face is under water, and at rest,
+H_i = level, it would lose level - y_i > 0 within a kernel's reach below the waterline.
 
 Rates of all pieces advance together by a Runge-Kutta-Legendre scheme of the first order: s stages are stable for a step
 (s² + s)/2 times that of one (Meyer, Balsara & Aslam, J. Comput. Phys. 257 (2014) 594).  What it leaves of a wave that
@@ -90,7 +92,8 @@ def update_state(content, grains, permeability, retention, properties, state):
 @parallel_kernel
 def pair_weights(state, near, outer, place, weight, outer_weight):
     """Overwrites ``weight`` (m,) and ``outer_weight`` (k,), 1/m²: -V_j (1/r) W' of every pair of soil and of
-    every place that a row of soil sees, the latter over the share of the pair that lies in soil, 0 of covered places.
+    every place that a row of soil sees, the latter over the share of the pair that lies in soil; 0 of covered places,
+    and of air over water that the row sees and lies below.
 
     state (s, 8): places and volumes;  near, outer: see `flow_rates`;  place: volume of a place, m².
     """
@@ -101,10 +104,17 @@ def pair_weights(state, near, outer, place, weight, outer_weight):
             dx = image(state[i, X] - state[j, X], near.period_x)
             dy = image(state[i, Y] - state[j, Y], near.period_y)
             weight[k] = -state[j, VOLUME] * kernel_slope(near.kind, np.sqrt(dx * dx + dy * dy) / near.h, near.h)
+        level = -np.inf
+        for k in range(np.uint64(outer.start[i]), np.uint64(outer.start[i + 1])):
+            j = np.uint64(outer.partner[k])
+            if outer.places[j, KIND] > 0.0:
+                level = max(level, outer.places[j, LEVEL])
+        below = state[i, Y] < level
         for k in range(np.uint64(outer.start[i]), np.uint64(outer.start[i + 1])):
             j = np.uint64(outer.partner[k])
             outer_weight[k] = 0.0
-            if outer.places[j, KIND] >= 0.0:
+            submerged = below and outer.places[j, KIND] == 0.0 and outer.places[j, PY] >= level
+            if outer.places[j, KIND] >= 0.0 and not submerged:
                 dx = image(state[i, X] - outer.places[j, PX], near.period_x)
                 dy = image(state[i, Y] - outer.places[j, PY], near.period_y)
                 distance = np.sqrt(dx * dx + dy * dy)

@@ -15,7 +15,7 @@ from porescale.common.api.simulation import absent
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
-from porescale.common.record.part import acts_between, overrides, restore, row_of, state_of, tables_of
+from porescale.common.record.part import acts_between, overrides, restore, restoring, row_of, state_of, tables_of
 from porescale.common.schema.sections import scene_as_dict
 
 if TYPE_CHECKING:
@@ -222,6 +222,8 @@ class Simulation(ShownSimulation):
         """Take up a state of a simulation built from the same scene.
 
         In the reverse order of the parts: what stands in the fluid is put in place before the fluid is restored.
+        InputError for another one's.
         """
-        self.clock.put(int(state["step"]))
-        restore(self.parts, state)
+        with restoring():
+            self.clock.put(int(state["step"]))
+            restore(self.parts, state)

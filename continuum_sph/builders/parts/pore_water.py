@@ -151,10 +151,13 @@ def head_on_lid(scene: Scene, count: int) -> float:
 
 def saturate(scene: Scene, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
     """Places, velocities (n, 2) and densities (n,) of water with that in pores of ``soil`` (s, 2) m that have none and
-    lie under the surface of the ground or the water table: at rest, as are columns that end below full pores."""
+    lie under the surface of the ground or the water table: at rest, as are columns that end below full pores; with
+    ``water.pressure = "none"`` all water starts without pressure, that in pores, too."""
     pores, depth = pore_water(scene, soil)
     lid = head_on_lid(scene, len(x) + len(pores))
     more = water_state(scene).settled_density(depth + lid, scene.gravity)
+    if scene.water.pressure == "none":
+        more = np.full(len(pores), scene.water.density)
     table = wet_top(scene, x)
     if (table is not None or lid > 0.0) and scene.water.pressure == "hydrostatic":
         inside = np.any([body.holds(x) for body in soil_section(scene).body], axis=0)

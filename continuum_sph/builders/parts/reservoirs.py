@@ -13,7 +13,7 @@ from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
 
 HIGHER = 0.1
-"""Share of the tank's height by which the water of a reservoir may stand over it: splashes."""
+"""Share of the tank's height by which the water of a reservoir may stand over it, or under its bottom: splashes."""
 
 
 class ReservoirPart(Part):
@@ -29,10 +29,11 @@ class ReservoirPart(Part):
 
     def check(self) -> None:
         """Raise Unstable when a level lies below its bottom or over the tank."""
+        margin = HIGHER * self.height
         for it in self.supply.reservoirs:
-            if not it.bottom - HIGHER <= it.level <= self.height * (1.0 + HIGHER):
+            if not it.bottom - margin <= it.level <= self.height + margin:
                 raise Unstable(
-                    f"reservoir {it.name}", "level", it.level, "m", self.flow.step, self.flow.time,
+                    f"the strip of {it.name}", "level", it.level, "m", self.flow.step, self.flow.time,
                     "its strip is too narrow, or water comes in faster than it leaves: widen it",
                 )  # fmt: skip
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.parts.material import material_of
-from continuum_sph.builders.parts.soil import SoilPart, porous_section, soil_flow, soil_section
+from continuum_sph.builders.parts.soil import SoilPart, porous_section, soil_flow, soil_law, soil_section
 from continuum_sph.builders.parts.stiffness import largest_modulus, sound_speed
 from continuum_sph.builders.sanity import Now, Range, require_finite, require_within
 from continuum_sph.scene.sections import Scene
@@ -26,6 +26,8 @@ from continuum_sph.unsaturated.richards import (
     properties_of,
     unity,
 )
+from continuum_sph.unsaturated.step import SHARE
+from continuum_sph.water.no_step import LEAST
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import square_lattice
@@ -80,6 +82,23 @@ def require_filled(scene: Scene, y: Floats) -> None:
         least = float(y.max()) + deepest / law.weight
         raise InputError(Fault(f"{key}.water_table", section.water_table, problem, "m", f">= {least:.4g}", repair))
     raise InputError(Fault(f"{key}.saturation", section.saturation, problem, repair=repair))
+
+
+def longest_step(scene: Scene) -> float:
+    """Longest step (s) for sound in the soil of a scene that cannot drain, of grains and the residual water.
+
+    InputError for water so stiff that it is less than `LEAST` of the soil's own, with which a run is unstable.
+    """
+    section, law, ground, modulus = porous_section(scene), retention_of(scene), soil_law(scene), largest_modulus(scene)
+    porosity, density = section.porosity, scene.water.density
+    whole, way = section.density + law.residual * porosity * density, SHARE * ground.smoothing.length
+    step, least = way / ((modulus + law.stiffness / porosity) / whole) ** 0.5, LEAST * ground.step_at_rest
+    if step < least:
+        fastest = (max(0.0, (way / least) ** 2 * whole - modulus) * porosity / density) ** 0.5
+        problem = f"makes steps of {step:.2g} s, less than {LEAST:g} of those of the soil"
+        raise InputError(Fault("water.sound_speed", sound_speed(scene), problem, "m/s", f"<= {fastest:.4g}",
+                               "lower it, or leave it out"))  # fmt: skip
+    return float(step)
 
 
 def outside_of(scene: Scene, ground: SoilFlow) -> Outside:
@@ -138,6 +157,7 @@ def moist_soil(scene: Scene) -> MoistSoil:
         resistance if resistance.number else None,
     )  # fmt: skip
     water.place(x, area)
+    longest_step(scene)
     require_filled(scene, x[:, 1])
     water.fill(initial_pressure(scene, x[:, 1]))
     both = MoistSoil(ground, water, outside_of(scene, ground), largest_modulus(scene))

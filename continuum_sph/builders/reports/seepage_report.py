@@ -8,7 +8,7 @@ import numpy as np
 from continuum_sph.builders.parts.air import air_pores, air_report
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.material import material_of
-from continuum_sph.builders.parts.pore_water import pore_law, water_counts
+from continuum_sph.builders.parts.pore_water import buoyancy, pore_law, water_counts
 from continuum_sph.builders.parts.sheet_pile import LEAST, LEAST_BARE, OPEN, given_heads, ground_at, resolved
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.stiffness import NATURAL, STIFF, largest_modulus, sound_speed
@@ -19,6 +19,7 @@ from continuum_sph.builders.reports.soil_report import (
     report_origin,
     report_rate,
     report_softening,
+    report_strain,
     report_watched,
     warn_of_heavy_grains,
     warn_of_rest,
@@ -74,6 +75,8 @@ def seepage_report(scene: Scene) -> Report:
     out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
     if not section.held:
         step = min(step, moving(scene, out, law, stiff))
+        dry = section.density * scene.gravity * (section.surface_over(soil, 0.5 * scene.numerics.spacing) - soil[:, 1])
+        report_strain(out, section, float((dry - buoyancy(scene, soil)).max()))
     air = len(air_pores(scene, soil))
     if scene.air:
         air_report(out, scene, law, air)

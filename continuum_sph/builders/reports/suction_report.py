@@ -4,12 +4,11 @@ import math
 
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles
 from continuum_sph.builders.parts.stiffness import largest_modulus
-from continuum_sph.builders.parts.suction import require_filled, retention_of, suction_section
+from continuum_sph.builders.parts.suction import longest_step, require_filled, retention_of, suction_section
 from continuum_sph.builders.reports.seepage_report import report_stiffness
 from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.unsaturated.richards import MOST_STAGES, SAFE, lattice_rate, stages_in
-from continuum_sph.unsaturated.step import SHARE
 from porescale.common.api.report import Report
 from porescale.common.core.constants import GRAVITY
 
@@ -18,15 +17,14 @@ HALF = 0.5
 
 
 def suction_report(scene: Scene) -> Report:
-    """The soil's report, and how its water rises, sinks and limits steps; InputError for retention that the water is
-    too soft for, or of which suction at the start leaves nothing."""
+    """The soil's report, and how its water rises, sinks and limits steps; InputError for water that is too soft
+    for its retention or too stiff for a step, or of which suction at the start leaves nothing."""
     section, suction, law = porous_section(scene), suction_section(scene), retention_of(scene)
     require_filled(scene, soil_particles(scene)[0][:, 1])
-    numbers, porosity, (least, most) = law.numbers, section.porosity, section.permeabilities
+    porosity, (least, most) = section.porosity, section.permeabilities
     modulus, smoothing, spacing = largest_modulus(scene), soil_law(scene).smoothing, scene.numerics.spacing
     h = smoothing.length
-    whole = section.density + numbers.residual * porosity * scene.water.density
-    step = SHARE * h / ((modulus + law.stiffness / porosity) / whole) ** 0.5
+    step = longest_step(scene)
     diffusivity = most * law.stiffness / (porosity * law.weight)
     longest = SAFE * spacing**2 / (diffusivity * lattice_rate(smoothing.kind, h / spacing))
     stages = stages_in(step / longest)

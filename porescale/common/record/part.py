@@ -6,10 +6,15 @@ of the list is the order of the columns of series.csv and of the order in which 
 last part to the first, so that a part may rely on what those after it have restored.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.model import Snapshot
+
+MISFITS = (KeyError, ValueError, TypeError, IndexError, AttributeError, OverflowError, AssertionError)
+"""What a model may raise that is given another one's state."""
 
 
 class Part:
@@ -77,6 +82,19 @@ def restore(parts: list[Part], state: dict[str, Any]) -> None:
     """Give every one of ``parts`` its share of a ``state`` of `state_of`, the last part first."""
     for part in reversed(parts):
         part.restore(state[part.key] if part.key else state)
+
+
+@contextmanager
+def restoring() -> Iterator[None]:
+    """InputError, caused by what it was, where a simulation within takes up a state and that is another one's."""
+    try:
+        yield
+    except MISFITS as error:
+        reason = f"holds no {error}" if isinstance(error, KeyError) else " ".join(str(error).split())
+        raise InputError(
+            Fault("state", None, f"is not that of a simulation of this scene ({reason})",
+                  repair="give what state() of one returned, and build this one anew: it may be overwritten in part")
+        ) from error  # fmt: skip
 
 
 def row_of(parts: Iterable[Part]) -> dict[str, float]:

@@ -14,10 +14,8 @@ from porescale.common.record.check_state import CHECKPOINT, misfit, other, sense
 from porescale.common.record.checkpoint import read_checkpoint, read_header
 from porescale.common.record.cost import Cost
 from porescale.common.record.model import Model
+from porescale.common.record.part import MISFITS
 from porescale.common.record.schedule import Schedule
-
-MISFITS = (KeyError, ValueError, TypeError, IndexError, AttributeError, OverflowError, AssertionError)
-"""What a model may raise that is given another one's state."""
 
 
 @dataclass(frozen=True)
@@ -87,10 +85,10 @@ def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Sa
         model.restore(content["state"])
         for name, schedule in schedules.items():
             schedule.restore(content["schedules"][name], model.time)
-    except KeyError as error:
-        raise misfit(folder, "does not fit this model", f"holds no {error}, which this version saves") from error
     except (*MISFITS, InputError) as error:
-        raise misfit(folder, "does not fit this model", error) from error
+        cause = error.__cause__ or error  # of a state that does not fit
+        reason = f"holds no {cause}, which this version saves" if isinstance(cause, KeyError) else cause
+        raise misfit(folder, "does not fit this model", reason) from error
     try:
         model.check()
     except Unstable as error:

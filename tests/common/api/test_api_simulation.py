@@ -46,6 +46,20 @@ def test_pieces_are_the_whole_to_the_bit(kind):
     assert fingerprint(build(scene).run(until=0.9 * end).state()) != fingerprint(pieces.state())  # it can tell
 
 
+@pytest.mark.parametrize("kind", SCENES)
+def test_a_state_of_another_simulation_is_refused_in_one_line(kind):
+    """It was a KeyError, a TypeError or a ValueError, of arrays within."""
+    own = build(SCENES[kind]())
+    others = [build(make()).state() for name, make in SCENES.items() if name != kind]
+    for wrong in (*others, {}, None, [1.0], dict.fromkeys(own.state(), "x")):
+        with pytest.raises(
+            InputError, match=r"^state: is not that of a simulation of this scene .*; give what"
+        ) as refused:
+            build(SCENES[kind]()).restore(wrong)
+        assert "\n" not in str(refused.value)
+    build(SCENES[kind]()).restore(own.state())  # the check that must fail
+
+
 def test_pieces_share_what_is_known_of_threads_while_as_many_are_allowed(monkeypatch):
     made = []
     place = "porescale.common.api.simulation.Threads"

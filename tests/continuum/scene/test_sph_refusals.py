@@ -219,6 +219,34 @@ def test_shares_in_warnings_are_written_out():
         assert any("late by 100 %" in it for it in report(scene(**kind)).warnings)
 
 
+@pytest.mark.parametrize(
+    "kind", [DRY, {"soil": {"saturated": True}, "water": {"sound_speed": 30.0}}], ids=["dry", "wet"]
+)
+def test_check_warns_of_soil_that_its_weight_strains_by_more_than_two_percent(kind):
+    """Of soil with water in its pores it said nothing, of dry soil from 1 % on."""
+
+    def told(stiffness):
+        out = report(scene(**kind | {"soil": kind.get("soil", {}) | {"stiffness": stiffness}}))
+        strain = next(row.value for rows in out.groups.values() for row in rows if row.name.startswith("strain under"))
+        return strain, [it for it in out.warnings if "weight strains it by" in it]
+
+    strain, (line,) = told(1e4)
+    assert strain == pytest.approx(told(1e6)[0] * 100.0)
+    enough = int(line.split("soil.stiffness to ")[1].split(" Pa")[0])
+    assert told(enough)[1] == []
+    assert told(0.99 * enough)[1] != []
+
+
+def test_soil_under_water_is_strained_by_its_buoyant_weight():
+    def strain(**kind):
+        out = report(scene(**kind))
+        return next(row.value for rows in out.groups.values() for row in rows if row.name.startswith("strain under"))
+
+    full = strain(soil={"saturated": True}, water={"sound_speed": 30.0})
+    # γ'/γ = 1 - (1 - n) ρ_w/ρ of the default soil, ρ = 1590, n = 0.4; at the lowest particle, 7.5 of 8 rows deep
+    assert full == pytest.approx(strain() * (1.0 - 600.0 / 1590.0) * 7.5 / 8.0, rel=1e-9)
+
+
 @pytest.mark.filterwarnings("error")
 def test_soil_without_stress_loses_none_in_a_centrifuge():
     """Its buoyancy was divided by next to nothing, and numpy told of an overflow."""

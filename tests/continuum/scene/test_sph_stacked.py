@@ -91,3 +91,16 @@ def test_ground_over_a_gap_weighs_nothing_on_the_ground_below(water):
     assert ground(0.2) == pytest.approx(alone, rel=1e-12)  # round-off of the same heights
     # the check that must fail: without the gap it bears as much again, and more
     assert (ground(0.0) > 1.9 * alone).all()
+
+
+@pytest.mark.parametrize("full", [{"saturated": True}, {"water_table": GROUND}])
+def test_water_without_pressure_has_none_in_pores(full):
+    """Pores were at rest under the water over them, which had no pressure."""
+    column = [{"width": WIDE, "bottom": GROUND, "height": LEVEL - GROUND}]
+
+    def starting(pressure):
+        water = {"sound_speed": 60.0, "column": column, "pressure": pressure}
+        return densities(simulation([], soil=SOIL | full, water=water))
+
+    assert (starting("none") == 1000.0).all()
+    assert (starting("hydrostatic") > 1000.0).all()  # the check that must fail

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.seepage import Reservoir, Supply, reservoir
-from continuum_sph.seepage.reservoir import CLOSER, HEAP, berths, measure_strip, park_waiting
+from continuum_sph.seepage.reservoir import CLOSER, HEAP, NoneLeftError, berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
 from porescale.common.neighbors import square_lattice
 
@@ -286,7 +286,7 @@ def test_water_that_waits_stays_where_it_is():
 
 
 def test_a_reservoir_without_particles_left_says_so():
-    with pytest.raises(ValueError, match="pool"):
+    with pytest.raises(NoneLeftError, match=r"pool: no particles left to bring it from .* to 0\.8 m"):
         supply(pool(0.8), spare=10).keep(0.0)
 
 

@@ -1,10 +1,13 @@
 """Reservoirs of scenes: refused, warned of, accounted for to the last particle, resumed bit for bit."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from continuum_sph.builders.parts.instruments import MeasuredWater, discharge
 from continuum_sph.builders.parts.pore_water import REACH, pore_law
+from continuum_sph.builders.parts.reservoirs import ReservoirPart
 from continuum_sph.builders.parts.soil import soil_particles
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
@@ -13,7 +16,7 @@ from continuum_sph.seepage import reservoir
 from continuum_sph.validation.tanks import tank_scene
 from continuum_sph.water.smoothing import RATIO
 from porescale.common.compiled.jit import set_threads
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import InputError, Unstable
 from porescale.common.neighbors import square_lattice
 
 SPACING, ROUND = 0.1, 2.3e-16
@@ -158,3 +161,33 @@ def test_one_thread_and_many_keep_the_same_levels_in_the_same_bits():
         ends.append((model.flow.water.layer.x.copy(), model.series()))
     assert np.array_equal(ends[0][0], ends[1][0])
     assert ends[0][1] == ends[1][1]
+
+
+@pytest.mark.parametrize("height", [0.3, 30.0])
+def test_a_level_may_lie_off_its_bounds_by_a_tenth_of_the_tank(height):
+    """Under its bottom it was 0.1 m in any tank: a third of a low one, nothing of a high one."""
+    pool = SimpleNamespace(name="pool", bottom=0.5 * height, level=0.0)
+    part = ReservoirPart(SimpleNamespace(reservoirs=[pool]), SimpleNamespace(step=3, time=0.1), height)
+    for level in (0.41, 1.09):
+        pool.level = level * height
+        part.check()
+    for level in (0.39, 1.11):
+        pool.level = level * height
+        with pytest.raises(Unstable, match=r"level = .* m at the strip of pool"):
+            part.check()
+
+
+def test_a_reservoir_without_particles_left_is_said_to_have_none():
+    """It was said to be unstable, with a position of nan m, and to need a lower numerics.courant."""
+    model = Simulation(scene(reservoir=[{"name": "upstream", "left": 0.0, "right": 0.2, "level": 0.14}]))
+    layer = model.flow.water.layer
+    waiting = np.flatnonzero(layer.mass[: layer.fluid] == 0.0)
+    layer.mass[waiting] = 1e-12  # all are in the tank
+    strip = (layer.x[: layer.fluid, 0] < 0.2) & (layer.x[: layer.fluid, 1] < 0.2)
+    layer.x[: layer.fluid][strip, 0] += 0.5  # and none in the strip
+    said = (
+        r"level = .* m at the strip of upstream; no particles are left to bring it to 0\.14 m: all that fill the tank"
+    )
+    with pytest.raises(Unstable, match=said) as raised:
+        model.advance(1)
+    assert "nan" not in str(raised.value)

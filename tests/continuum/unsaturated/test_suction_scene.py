@@ -150,6 +150,17 @@ def test_check_refuses_water_softer_than_suction():
         report(scene(given, water={"sound_speed": 1.0}))
 
 
+@pytest.mark.parametrize("look", [report, Simulation])
+def test_water_too_stiff_for_a_step_is_refused(look):
+    """`check` passed it, and the run was "unstable at step 0", with repairs that did not help."""
+    with pytest.raises(InputError, match=r"water\.sound_speed = 1000000\.0 m/s: makes steps of 5\.6e-09 s") as refused:
+        look(scene(water={"sound_speed": 1e6}))
+    allowed = float(refused.value.faults[0].allowed.removeprefix("<= "))
+    look(scene(water={"sound_speed": 0.999 * allowed}))
+    with pytest.raises(InputError, match=r"water\.sound_speed"):
+        look(scene(water={"sound_speed": 1.001 * allowed}))
+
+
 @pytest.mark.slow
 def test_a_column_over_its_water_table_stays_at_rest():
     model = Simulation(scene())

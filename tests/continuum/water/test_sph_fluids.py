@@ -177,3 +177,19 @@ def test_the_step_that_capillary_waves_allow_is_reported_and_used():
     model = Simulation(thick)
     h = RATIO * 0.05
     assert model.step_seconds == pytest.approx(0.25 * (1000.0 * h**3 / (2.0 * np.pi * 1e6)) ** 0.5)
+
+
+def test_discs_that_overlap_are_refused_where_each_has_its_own_pressure():
+    """Particles of both had σ/R of the disc that came last: the order in which discs are given was physics."""
+    two = [{"x": 0.3, "y": 0.5, "radius": 0.2}, {"x": 0.6, "y": 0.5, "radius": 0.15}]
+    line = (
+        r"inclusion\.disc\[1\] = \(0\.6, 0\.5\) m: overlaps inclusion\.disc\[0\] by 0\.05 m, .* its own pressure; "
+        "move them apart, or give one disc in place of both"
+    )
+    with pytest.raises(InputError, match=line):
+        scene(surface_tension=1.0, disc=two)
+    scene(surface_tension=1.0, disc=[two[0], two[1] | {"x": 0.65}])  # they touch
+    # without surface tension they are one body, whatever the order
+    one, other = (Simulation(scene(disc=discs)).flow.layer for discs in (two, two[::-1]))
+    np.testing.assert_array_equal(one.material, other.material)
+    np.testing.assert_array_equal(one.density, other.density)
