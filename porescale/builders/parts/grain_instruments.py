@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from porescale.builders.initial.frames import Placed, disc_count, free_rows
 from porescale.builders.initial.walls import WallPlaces, middles
 from porescale.builders.parts.flow_fields import ratio_column
-from porescale.builders.parts.frame_measures import solid_in
+from porescale.builders.parts.frame_measures import solid_areas, solid_in
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
@@ -34,7 +34,7 @@ from porescale.dem.measures.fabric import coordination as coordination_of
 from porescale.dem.measures.fabric import fabric as fabric_of
 from porescale.dem.measures.loads import on_discs, on_surface
 from porescale.dem.measures.motion import Motion, motion
-from porescale.dem.measures.porosity import disc_areas, void_ratio
+from porescale.dem.measures.porosity import disc_shares, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress, principal
 from porescale.dem.motion.periodic_cell import Straining
@@ -144,7 +144,8 @@ class GrainInstruments(Part):
         periodic = grains.box.periodic if cell is None else (False, False)
         raster = Raster.over(grains.box.lower, grains.box.upper, section.spacing, width, periodic)
         discs = _without_mass(grains.discs, self.held)
-        fields = CoarseGrained(raster, discs, found, conserve=cell is None, cell=cell, area=areas(grains))
+        area = solid_areas(grains, self.placed)
+        fields = CoarseGrained(raster, discs, found, conserve=cell is None, cell=cell, area=area)
         cells: dict[str, AnyArray] = {}
         units: dict[str, str] = {}
         for name in section.fields:
@@ -250,8 +251,7 @@ def region_row(
     bodies, number = _without_mass(as_bodies(grains), held), body_of(grains)
     others = held | (number != np.arange(d.count))
     discs = disc_count(grains)
-    share = disc_areas(region, d.position, d.radius, period) / np.where(d.area > 0.0, d.area, 1.0)
-    share = np.where(d.area > 0.0, share, region.holds(d.position, period))
+    share = disc_shares(region, d.position, d.radius, period)
     solid = float(share[:discs] @ areas(grains)[:discs]) + solid_in(grains, placed, region)
     pores = 1.0 - solid / region.area
     stress, kinetic = contact_stress(region, found, period), kinetic_stress(region, bodies, period)
