@@ -44,6 +44,8 @@ KERNEL_WIDTH = 2.5
 """Width of the kernel in mean diameters where a scene gives none: some twenty grains are felt at a point."""
 WIDEST = 1.5
 """The least of it in diameters of the largest grain: alone it then fills 5/9 of its middle, and never more than all."""
+ROUNDED = 1e-9
+"""Of a side of the box: places as close as this are the same but for round-off."""
 FIELDS, CONTACTS = "grain_fields", "contacts"
 """Names of the grid and of the cloud in snapshots."""
 
@@ -209,6 +211,19 @@ def _moving(grains: Grains, region: Region, weight: AnyArray) -> Motion:
     return motion(at, velocity, weight)
 
 
+def with_sides(region: Region, grains: Grains) -> Region:
+    """The region, a ROUNDED of the box larger where it ends at a side that is not periodic, so that it holds the points
+    of contacts with walls there: its own upper and right edges hold none, and points lie on sides to round-off."""
+    box, ends = grains.box, (list(region.lower), list(region.upper))
+    for axis in range(2):
+        near = ROUNDED * (box.upper[axis] - box.lower[axis])
+        for edges, side, out in ((ends[0], box.lower, -near), (ends[1], box.upper, near)):
+            if not box.periodic[axis] and abs(edges[axis] - side[axis]) < near:
+                edges[axis] = side[axis] + out
+    (left, bottom), (right, top) = ends
+    return Region((left, bottom), (right, top))
+
+
 def region_row(
     grains: Grains, found: Contacts, region: Region, loose: AnyArray, held: AnyArray, placed: Sequence[Placed] = ()
 ) -> Row:
@@ -218,7 +233,7 @@ def region_row(
     Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it; polygons
     (``placed``) take their exact area, and move with their corners; held ones, and those that are controlled in all
     components, have no mass; coordination and rattlers are of discs and clumps whose centre is inside, without these;
-    fabric and forces of contacts whose point is inside.
+    fabric and forces of contacts whose point is inside, or on a side of the box at which the region ends.
 
     porosity () : share of the region that is no grain
     void ratio () : pores over grains
@@ -257,8 +272,9 @@ def region_row(
     stress, kinetic = contact_stress(region, found, period), kinetic_stress(region, bodies, period)
     mean, deviator, angle = principal(stress)
     inside = region.holds(bodies.position, period) & ~others
-    here = found.chosen(region.holds(found.point, period) & loads(found))
-    fabric, force = fabric_of(found, region, period), here.normal_force
+    reaching = with_sides(region, grains)
+    here = found.chosen(reaching.holds(found.point, period) & loads(found))
+    fabric, force = fabric_of(found, reaching, period), here.normal_force
     moving = _moving(grains, region, bodies.mass * share)
     neighbours = coordination_of(found.of_bodies(number), region, bodies.position, period, loose, others)
     nan = float("nan")
