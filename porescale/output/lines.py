@@ -28,7 +28,7 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
     """Write lines.csv, a row a point: of every line in its turn, of every snapshot; [] if the scene has no line.
 
     time (s) : of the snapshot
-    line () : name of the line
+    line () : number of the line in the scene, from 0
     distance (m) : along the line, from its start
     x (m) : of the point
     y (m) : of the point

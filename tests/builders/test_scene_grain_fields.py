@@ -25,7 +25,8 @@ FORCE = 2e5 * 0.5e-6  # N/m
 
 
 def pressed(**more):
-    return build(dry(grains={"density": 2500, "grain": PRESSED}, gravity=[0.0, 0.0], **{**ASKED, **more}))
+    given = {"grains": {"density": 2500, "grain": PRESSED}, "gravity": [0.0, 0.0], **ASKED}
+    return build(dry(**given | more))
 
 
 def test_a_region_reads_what_its_grains_and_contacts_are():
@@ -41,6 +42,23 @@ def test_a_region_reads_what_its_grains_and_contacts_are():
     assert row["region 1 contacts ()"] == 0
     assert math.isnan(row["region 1 fabric anisotropy ()"])
     assert row["region 1 share of rattlers ()"] == 1.0
+
+
+@pytest.mark.parametrize(("right", "up"), [(False, False), (True, False), (False, True), (True, True)])
+def test_a_region_counts_contacts_with_the_walls_of_any_corner_of_the_box(right, up):
+    def at(x, y):
+        """A point (m) of the lower left corner, in the corner of this test."""
+        return (0.012 - x if right else x, 0.008 - y if up else y)
+
+    corners = np.sort([at(0.0, 0.0), at(0.004, 0.002)], axis=0)
+    grains = [grain(*at(it["x"], it["y"]), it["diameter"]) for it in PRESSED]
+    region = [{"name": "corner", "lower": corners[0].tolist(), "upper": corners[1].tolist()}]
+    row = pressed(grains={"density": 2500, "grain": grains}, region=region).tables()["regions"]
+    assert row["corner contacts ()"] == 3
+    # Contacts of 0.5 um each: the direction between the grains is askew, as above, and places are known to 1e-18 m.
+    assert row["corner mean normal force (N/m)"] == pytest.approx(FORCE, rel=3e-4)
+    # Normals along x, x and y: the tensor is diag(2/3, 1/3), a = 2 (2/3 - 1/3), but for the skew of 5e-4.
+    assert row["corner fabric anisotropy ()"] == pytest.approx(2 / 3, rel=1e-5)
 
 
 def lost():

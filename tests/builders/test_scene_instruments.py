@@ -19,6 +19,7 @@ from porescale.common.schema.sections import scene_as_dict
 from porescale.output.lines import write_lines
 from porescale.output.rectangle_mean import RectangleMean
 from porescale.output.sample import Sampler, along, midpoints
+from porescale.scene.measures.line import Flux, Line
 from tests.reference.scenes import dry, water
 
 DISC = {"x": 0.004, "y": 0.004, "diameter": 0.002}
@@ -381,3 +382,9 @@ def test_a_rectangle_needs_both_sides_and_lies_in_the_box():
     assert said(width=0.001)[0].startswith("probe[0].height: a rectangle needs both")
     assert said(width=0.001, height=0.01)[0].startswith("probe[0] = '(0.0035, -0.001)': is outside the box")
     water(probe=[{"x": 0.004, "y": 0.004, "width": 0.001, "height": 0.008}])  # the twin
+
+
+def test_a_line_is_in_its_table_by_its_number_and_its_name_is_said_to_be_a_note():
+    said = {it: it.model_fields["name"].description or "" for it in (Line, Flux)}
+    assert "number of a line" in said[Line]
+    assert "name in the columns" in said[Flux]  # the twin

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from porescale.builders.initial.frames import Placed, disc_count, free_rows
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.frames import polygon_moments
-from porescale.dem.bodies.rigid import body_of
+from porescale.dem.bodies.rigid import areas, body_of
 from porescale.dem.grains import Grains
 from porescale.dem.measures.contact_list import nearest_image
 from porescale.dem.measures.region import Region
@@ -54,13 +54,30 @@ def solid_in(grains: Grains, placed: Sequence[Placed], region: Region) -> float:
         at = grains.discs.position[first : first + len(it.frame.corners)]
         first += len(it.frame.corners)
         area = it.frame.mass_properties().area or 0.0
-        if it.frame.closed and it.kind != "container":
+        if _solid(it):
             at = at[it.frame.loop] + region.near(at[:1], period) - at[:1]
             for shift in region.shifts(at, at, period):
                 total += clipped_area(at + shift, region)
         elif it.free:
             total += area * float(np.mean(region.holds(at, period)))
     return total
+
+
+def solid_areas(grains: Grains, placed: Sequence[Placed]) -> Floats:
+    """Area that each disc stands for, (n,) m^2: corners of the frames that ``solid_in`` counts have shares of theirs,
+    others none, as containers, which are walls."""
+    found, first = areas(grains), disc_count(grains)
+    for it in placed:
+        own = slice(first, first + len(it.frame.corners))
+        first = own.stop
+        if not (_solid(it) or it.free):
+            found[own] = 0.0
+    return found
+
+
+def _solid(placed: Placed) -> bool:
+    """Whether a frame is solid within its outline: a polygon, no container."""
+    return placed.frame.closed and placed.kind != "container"
 
 
 def clipped_area(corners: Floats, region: Region) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from porescale.builders.initial.frames import Placed, disc_count, free_rows
 from porescale.builders.initial.walls import WallPlaces, middles
 from porescale.builders.parts.flow_fields import ratio_column
-from porescale.builders.parts.frame_measures import solid_in
+from porescale.builders.parts.frame_measures import solid_areas, solid_in
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
@@ -34,7 +34,7 @@ from porescale.dem.measures.fabric import coordination as coordination_of
 from porescale.dem.measures.fabric import fabric as fabric_of
 from porescale.dem.measures.loads import on_discs, on_surface
 from porescale.dem.measures.motion import Motion, motion
-from porescale.dem.measures.porosity import disc_areas, void_ratio
+from porescale.dem.measures.porosity import disc_shares, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress, principal
 from porescale.dem.motion.periodic_cell import Straining
@@ -44,6 +44,8 @@ KERNEL_WIDTH = 2.5
 """Width of the kernel in mean diameters where a scene gives none: some twenty grains are felt at a point."""
 WIDEST = 1.5
 """The least of it in diameters of the largest grain: alone it then fills 5/9 of its middle, and never more than all."""
+ROUNDED = 1e-9
+"""Of a side of the box: places as close as this are the same but for round-off."""
 FIELDS, CONTACTS = "grain_fields", "contacts"
 """Names of the grid and of the cloud in snapshots."""
 
@@ -144,7 +146,8 @@ class GrainInstruments(Part):
         periodic = grains.box.periodic if cell is None else (False, False)
         raster = Raster.over(grains.box.lower, grains.box.upper, section.spacing, width, periodic)
         discs = _without_mass(grains.discs, self.held)
-        fields = CoarseGrained(raster, discs, found, conserve=cell is None, cell=cell, area=areas(grains))
+        area = solid_areas(grains, self.placed)
+        fields = CoarseGrained(raster, discs, found, conserve=cell is None, cell=cell, area=area)
         cells: dict[str, AnyArray] = {}
         units: dict[str, str] = {}
         for name in section.fields:
@@ -208,6 +211,19 @@ def _moving(grains: Grains, region: Region, weight: AnyArray) -> Motion:
     return motion(at, velocity, weight)
 
 
+def with_sides(region: Region, grains: Grains) -> Region:
+    """The region, a ROUNDED of the box larger where it ends at a side that is not periodic, so that it holds the points
+    of contacts with walls there: its own upper and right edges hold none, and points lie on sides to round-off."""
+    box, ends = grains.box, (list(region.lower), list(region.upper))
+    for axis in range(2):
+        near = ROUNDED * (box.upper[axis] - box.lower[axis])
+        for edges, side, out in ((ends[0], box.lower, -near), (ends[1], box.upper, near)):
+            if not box.periodic[axis] and abs(edges[axis] - side[axis]) < near:
+                edges[axis] = side[axis] + out
+    (left, bottom), (right, top) = ends
+    return Region((left, bottom), (right, top))
+
+
 def region_row(
     grains: Grains, found: Contacts, region: Region, loose: AnyArray, held: AnyArray, placed: Sequence[Placed] = ()
 ) -> Row:
@@ -217,7 +233,7 @@ def region_row(
     Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it; polygons
     (``placed``) take their exact area, and move with their corners; held ones, and those that are controlled in all
     components, have no mass; coordination and rattlers are of discs and clumps whose centre is inside, without these;
-    fabric and forces of contacts whose point is inside.
+    fabric and forces of contacts whose point is inside, or on a side of the box at which the region ends.
 
     porosity () : share of the region that is no grain
     void ratio () : pores over grains
@@ -250,15 +266,15 @@ def region_row(
     bodies, number = _without_mass(as_bodies(grains), held), body_of(grains)
     others = held | (number != np.arange(d.count))
     discs = disc_count(grains)
-    share = disc_areas(region, d.position, d.radius, period) / np.where(d.area > 0.0, d.area, 1.0)
-    share = np.where(d.area > 0.0, share, region.holds(d.position, period))
+    share = disc_shares(region, d.position, d.radius, period)
     solid = float(share[:discs] @ areas(grains)[:discs]) + solid_in(grains, placed, region)
     pores = 1.0 - solid / region.area
     stress, kinetic = contact_stress(region, found, period), kinetic_stress(region, bodies, period)
     mean, deviator, angle = principal(stress)
     inside = region.holds(bodies.position, period) & ~others
-    here = found.chosen(region.holds(found.point, period) & loads(found))
-    fabric, force = fabric_of(found, region, period), here.normal_force
+    reaching = with_sides(region, grains)
+    here = found.chosen(reaching.holds(found.point, period) & loads(found))
+    fabric, force = fabric_of(found, reaching, period), here.normal_force
     moving = _moving(grains, region, bodies.mass * share)
     neighbours = coordination_of(found.of_bodies(number), region, bodies.position, period, loose, others)
     nan = float("nan")

@@ -33,12 +33,14 @@ def arms(grains: State) -> Floats:
 
 
 def areas(grains: State) -> Floats:
-    """Area that each disc stands for, (n,) m^2: members share the area of their union in proportion to their own."""
+    """Area that each disc stands for, (n,) m^2: members share that of their body in proportion to their own area, or to
+    their mass where they are points."""
     area, clumps = np.array(grains.discs.area), clumps_of(grains)
     if clumps is not None:
         own, numbers = area[clumps.member], np.repeat(np.arange(clumps.count), np.diff(clumps.start))
-        total = np.bincount(numbers, own, clumps.count)
-        area[clumps.member] = own * np.divide(clumps.area, total, out=np.zeros_like(total), where=total > 0.0)[numbers]
+        points = np.bincount(numbers, own, clumps.count) == 0.0
+        own = np.where(points[numbers], grains.discs.mass[clumps.member], own)
+        area[clumps.member] = own * (clumps.area / np.bincount(numbers, own, clumps.count))[numbers]
     return area
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from porescale.common.core.types import Floats
 from porescale.dem.discs import Discs
 from porescale.dem.measures.contact_list import Contacts
-from porescale.dem.measures.porosity import disc_areas
+from porescale.dem.measures.porosity import disc_shares
 from porescale.dem.measures.region import Period, Region
 
 
@@ -39,7 +39,7 @@ def contact_stress(region: Region, contacts: Contacts, period: Period = (0.0, 0.
 
 def kinetic_stress(region: Region, discs: Discs, period: Period = (0.0, 0.0)) -> Floats:
     """Stress of the velocities about their mass mean, (2, 2) Pa; zeros where there is no disc."""
-    mass = discs.mass * disc_areas(region, discs.position, discs.radius, period) / discs.area
+    mass = discs.mass * disc_shares(region, discs.position, discs.radius, period)
     total = mass.sum()
     if not total > 0.0:
         return np.zeros((2, 2))

@@ -23,25 +23,30 @@ from porescale.piv.images.rendered import measured_with
 Picture = NDArray[Any]
 Box = tuple[int, int, int, int]
 
+AS_SHOWN = cv2.IMREAD_ANYDEPTH | cv2.IMREAD_ANYCOLOR
+"""Depth and colours as they are, turned as the file says: cameras store what an upright one sees lying on its side."""
 LEAST = {"start": 0, "step": 1, "end": 1}
 """Least numbers of frames that choose among those of a film."""
 
 
 def picture(path: Path) -> Picture:
-    """A grey picture (rows, columns), 8 or 16 bits; colour becomes its luminance.  InputError if it cannot be read."""
+    """A grey picture (rows, columns), 8 or 16 bits, the way up that the file says; colour becomes its luminance.
+
+    InputError if it cannot be read.
+    """
     try:
         content = np.frombuffer(given_bytes(Path(path)), np.uint8)
     except OSError as error:
         raise InputError(Fault("picture", str(path), f"cannot be read ({error.strerror})")) from error
     try:
-        found = cv2.imdecode(content, cv2.IMREAD_UNCHANGED) if content.size else None
+        found = cv2.imdecode(content, AS_SHOWN) if content.size else None
     except cv2.error:
         found = None
     if found is None:
         kinds = ", ".join(STILLS)
         raise InputError(Fault("picture", str(path), "is no picture that can be read", allowed=kinds))
     if found.ndim == 3:
-        found = cv2.cvtColor(found, cv2.COLOR_BGRA2GRAY if found.shape[2] == 4 else cv2.COLOR_BGR2GRAY)
+        found = cv2.cvtColor(found, cv2.COLOR_BGR2GRAY)
     return np.asarray(found)
 
 
@@ -218,14 +223,15 @@ def _unreadable(path: Path, error: Exception) -> InputError:
 
 
 def _decoded(path: Path) -> Iterator[Picture]:
-    """Frames of a film, grey."""
+    """Frames of a film, grey, turned as the film says: phones store what they see upright lying on its side."""
     try:
         require_finite(path)
         with av.open(str(path), metadata_errors="replace") as container:
             if not container.streams.video:
                 raise InputError(Fault("film", str(path), "holds no pictures"))
             for frame in container.decode(video=0):
-                yield frame.to_ndarray(format="gray")
+                turns = round(getattr(frame, "rotation", 0) / 90)  # against the clock
+                yield np.ascontiguousarray(np.rot90(frame.to_ndarray(format="gray"), turns))
     except (av.FFmpegError, OSError) as error:
         raise _unreadable(path, error) from error
 

@@ -23,6 +23,7 @@ class Segment(Section):
 class Line(Segment):
     """A straight line along which velocity and pressure are recorded at every snapshot: lines.csv."""
 
+    name: str = pydantic.Field("", description="a note: lines.csv has the number of a line, from 0")
     points: int = pydantic.Field(101, ge=2, le=100_000, description="points along the line, both ends included")
 
 
