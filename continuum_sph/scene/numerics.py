@@ -23,7 +23,7 @@ class NumericsSection(Section):
     spacing: float = quantity("m", ge=1e-6, le=1e3, help="spacing of the particles at the start")
     kernel: Literal["wendland", "cubic"] = pydantic.Field(default="wendland", description="smoothing kernel")
     smoothing_ratio: float = quantity("", 1.375, ge=1, le=3, help="smoothing length over spacing")
-    artificial_viscosity: float = quantity("", 0.01, ge=0, le=10, help="alpha of eq. 36")
+    artificial_viscosity: float = quantity("", 0.02, ge=0, le=10, help="alpha of eq. 36")
     artificial_viscosity_2: float = quantity("", 0.0, ge=0, le=10, help="beta of eq. 36")
     softening: float = quantity("", 0.1, ge=1e-6, le=10, help="epsilon of eq. 36")
     density_diffusion: float = quantity("", 0.1, ge=0, le=0.2, help="delta of the density diffusion")

@@ -105,7 +105,7 @@ class TrappedAir:
         walls = tank_walls(width, whole, spacing, 3, sides=False, lid=True)
         fluids = (Fluid(state, VISCOSITY), Fluid(self.gas, self.viscosity))
         law = Law(
-            smoothing, spacing, fluids if self.filled else fluids[:1], (0.0, -GRAVITY), alpha=0.01,
+            smoothing, spacing, fluids if self.filled else fluids[:1], (0.0, -GRAVITY), alpha=0.02,
             diffusion=0.04, noise=LINEAR, corrected=True, cut=True,
         )  # fmt: skip
         mass = np.concatenate((rho * spacing**2, np.full(len(walls), WATER * spacing**2)))

@@ -69,7 +69,7 @@ class Infiltration:
         x = square_lattice((0.0, self.height), size, spacing)
         return water_in(
             soil, x, WATER * GRAVITY * (size[1] - x[:, 1]), size, spacing, self.sound_speed, Resistance(self.porosity),
-            gravity=GRAVITY, cut=True, alpha=0.01, shifting=1.0,
+            gravity=GRAVITY, cut=True, alpha=0.02, shifting=1.0,
         )  # fmt: skip
 
     def reached(self, both: Seepage) -> float:
@@ -138,7 +138,7 @@ class Imbibition:
         x = square_lattice((0.0, self.height), size, spacing)
         both = water_in(
             soil, x, np.zeros(len(x)), size, spacing, self.sound_speed, Resistance(self.porosity), ratio=self.ratio,
-            cut=True, alpha=0.01,
+            cut=True, alpha=0.02,
         )  # fmt: skip
         both.water.before_force = self.drive
         return both

@@ -75,7 +75,7 @@ def front_speed(rows: int, bed: str = "ground") -> float:
     column = {"width": SIDE, "height": SIDE, "bottom": floor}
     table: dict[str, Any] = {
         "tank": {"width": width, "height": floor + 1.5 * SIDE, "lid": False},
-        "numerics": {"spacing": spacing, "tension": "cut"},  # over either bed, as it is beside ground
+        "numerics": {"spacing": spacing, "tension": "kept"},  # over either bed
         "time": {"end": TIMES[1]},
         "output": {"snapshot_interval": TIMES[1], "series_interval": TIMES[1]},
         "water": {"viscosity": VISCOSITY, "column": [column]},

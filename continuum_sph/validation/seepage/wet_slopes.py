@@ -94,7 +94,7 @@ class WetSlope:
         both = water_in(
             ground, x.copy(), WATER * across * (depth - x[:, 1]), size, spacing, self.sound_speed, Resistance(n),
             grains=self.grains, permeability=self.permeability, gravity=across, modulus=material.column_modulus,
-            alpha=0.01, cut=True,
+            alpha=0.02, cut=True,
         )  # fmt: skip
         if self.seeping:
             both.water.law = replace(both.water.law, gravity=(GRAVITY * math.sin(tilt), -across))
