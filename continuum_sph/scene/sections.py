@@ -100,6 +100,19 @@ class Scene(SceneBase):
         return spacings(self.tank.width, spacing) * spacing, spacings(self.tank.height, spacing) * spacing
 
     @pydantic.model_validator(mode="after")
+    def _tension(self) -> "Scene":
+        """Says what water does under negative pressure where that is left out.
+
+        Beside ground they are cut, since thin water would cling to it; in the open, and beside air, kept, since without
+        them water that splashes loses volume.
+        """
+        if self.numerics.tension is None:
+            wet = self.soil is not None and self.has_water and self.air is None
+            chosen = self.numerics.model_copy(update={"tension": "cut" if wet else "kept"})
+            object.__setattr__(self, "numerics", chosen)
+        return self
+
+    @pydantic.model_validator(mode="after")
     def _fits(self) -> "Scene":
         tank, spacing = self.tank, self.numerics.spacing
         faults = self._unresolved()

@@ -195,13 +195,6 @@ def water_state(scene: Scene) -> Tait:
     return Tait(scene.water.density, sound_speed(scene), scene.water.exponent)
 
 
-def cuts_tension(scene: Scene) -> bool:
-    """Whether negative pressures are cut: as given; else beside ground, over which water would cling, but not in air,
-    where water that splashes would lose volume."""
-    given = scene.numerics.tension
-    return given == "cut" if given is not None else scene.soil is not None and scene.air is None
-
-
 def water_law(scene: Scene) -> Law:
     """Parameters of the fluid particles of a scene."""
     numerics, water, state, second = scene.numerics, scene.water, water_state(scene), scene.inclusion
@@ -224,7 +217,7 @@ def water_law(scene: Scene) -> Law:
         sticky=scene.tank.walls != "slip",
         images=scene.tank.wall_particles == "images",
         tension=second.surface_tension if second else 0.0,
-        cut=cuts_tension(scene),
+        cut=numerics.tension == "cut",
         courant=numerics.courant,
     )
 

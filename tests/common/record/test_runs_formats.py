@@ -30,7 +30,10 @@ from tests.reference.toy_model import run_toy
 
 BEFORE = {"damping": 0.2, "stress_diffusion": 100.0}
 """Keys of soil.numerics that the kept run had by default; today they follow from the ground where a scene is silent."""
-AS_BEFORE = [*(f"soil.numerics.{key}={value}" for key, value in BEFORE.items()), "numerics.smoothing_ratio=1.3"]
+AS_BEFORE = [
+    *(f"soil.numerics.{key}={value}" for key, value in BEFORE.items()), "numerics.smoothing_ratio=1.3",
+    "numerics.tension=kept",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -173,6 +176,7 @@ def test_a_kept_run_without_a_key_of_today_says_which_value_is_as_before(kept_ru
             for key, it in BEFORE.items()
         ),
         "numerics.smoothing_ratio = 1.375: was 1.3; resume with 1.3, or start another run",
+        "numerics.tension = 'cut': was 'kept'; resume with 'kept', or start another run",
         "numerics.noise_floor = 0.001: the run was begun by a version without it; set it to 0.0 to go on as that did, "
         "or start another run",
     ]

@@ -7,7 +7,6 @@ from continuum_sph.builders.parts import pore_water
 from continuum_sph.builders.parts.mixture import DRY, WET
 from continuum_sph.builders.parts.sheet_pile import NAME
 from continuum_sph.builders.parts.stiffness import sound_speed
-from continuum_sph.builders.parts.water import cuts_tension
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import PACKAGE
@@ -64,11 +63,14 @@ def test_water_left_to_itself_is_as_stiff_as_its_head_and_the_ground_ask_for():
 
 def test_water_pulls_on_nothing_beside_ground_and_does_in_the_open_and_in_air():
     column = {"column": [{"width": 0.3, "height": 0.4}]}
-    assert cuts_tension(scene())
-    assert not cuts_tension(scene(numerics={"spacing": 0.02, "tension": "kept"}))
-    assert not cuts_tension(scene(air={}, tank={"width": 0.3, "height": 0.6}))
-    assert not cuts_tension(tank_scene(0.3, 0.6, 0.02, water=column))
-    assert cuts_tension(tank_scene(0.3, 0.6, 0.02, water=column, numerics={"tension": "cut"}))
+    dry = scene(water={}, probe=[], level=[])
+    open_water = tank_scene(0.3, 0.6, 0.02, water=column)
+    airy = scene(air={}, tank={"width": 0.3, "height": 0.6})
+    assert scene().numerics.tension == "cut"
+    assert [it.numerics.tension for it in (dry, open_water, airy)] == ["kept"] * 3
+    given = {"spacing": 0.02, "tension": "kept"}
+    assert scene(numerics=given).numerics.tension == "kept"
+    assert tank_scene(0.3, 0.6, 0.02, water=column, numerics={"tension": "cut"}).numerics.tension == "cut"
 
 
 def test_water_beside_and_over_ground_is_not_in_its_pores():
