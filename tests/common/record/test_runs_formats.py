@@ -176,9 +176,9 @@ def test_a_kept_run_without_a_key_of_today_says_which_value_is_as_before(kept_ru
             for key, it in BEFORE.items()
         ),
         "numerics.smoothing_ratio = 1.375: was 1.3; resume with 1.3, or start another run",
-        "numerics.tension = 'cut': was 'kept'; resume with 'kept', or start another run",
         "numerics.noise_floor = 0.001: the run was begun by a version without it; set it to 0.0 to go on as that did, "
         "or start another run",
+        "numerics.tension = 'cut': was 'kept'; resume with 'kept', or start another run",
     ]
     # As that it would go on, but soil of that version knows neither mean pressure nor crowd of its surroundings.
     as_before = [word for it in ("numerics.noise_floor=0", *AS_BEFORE) for word in ("--set", it)]
