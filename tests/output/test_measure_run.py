@@ -149,6 +149,16 @@ def test_regions_are_those_of_the_run(heap):
     assert not np.array_equal(own["low porosity ()"], other["low porosity ()"])
 
 
+def test_a_grain_moved_in_all_components_is_none_of_the_grains_afterwards_either(tmp_path):
+    whole = [{"name": "box", "lower": [0.0, 0.0], "upper": [0.012, 0.008]}]
+    still = {"velocity": 0.0}
+    control = [{"grain": 0, "x": {"velocity": 0.005}, "y": still, "rotation": still}]
+    run = driven(dry(region=whole, output__contacts=True, time__end=0.005, control=control), tmp_path)
+    table, own = run.measure(region=whole)["regions"], run.table("regions")
+    for column in own:
+        assert np.array_equal(own[column], table[column], equal_nan=True), column
+
+
 def test_regions_of_grains_in_fluid_carry_the_hydraulic_radius_ratio(tmp_path):
     run = driven(bed(region=REGIONS, output__contacts=True, time__end=0.004), tmp_path)
     table, own = run.measure(region=REGIONS)["regions"], run.table("regions")

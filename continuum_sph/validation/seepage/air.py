@@ -22,7 +22,7 @@ from scipy.integrate import solve_ivp
 
 from continuum_sph.builders.parts.air import AIR, specific_weights
 from continuum_sph.seepage import Frame, Resistance, Seepage
-from continuum_sph.validation.seepage.setups import COLUMNS, WATER, pore_flow
+from continuum_sph.validation.seepage.setups import ALPHA, COLUMNS, WATER, pore_flow
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.eos.adiabatic import AdiabaticGas
 from continuum_sph.water.eos.liquid import Tait
@@ -105,7 +105,7 @@ class TrappedAir:
         walls = tank_walls(width, whole, spacing, 3, sides=False, lid=True)
         fluids = (Fluid(state, VISCOSITY), Fluid(self.gas, self.viscosity))
         law = Law(
-            smoothing, spacing, fluids if self.filled else fluids[:1], (0.0, -GRAVITY), alpha=0.02,
+            smoothing, spacing, fluids if self.filled else fluids[:1], (0.0, -GRAVITY), alpha=ALPHA,
             diffusion=0.04, noise=LINEAR, corrected=True, cut=True,
         )  # fmt: skip
         mass = np.concatenate((rho * spacing**2, np.full(len(walls), WATER * spacing**2)))

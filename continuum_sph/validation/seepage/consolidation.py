@@ -44,7 +44,7 @@ class Consolidation:
 
     @property
     def stiffness(self) -> float:
-        """E, Pa."""
+        """Young's modulus of the layer, Pa."""
         return unconfined(self.modulus, self.poisson)
 
     def seconds(self, factor: float) -> float:

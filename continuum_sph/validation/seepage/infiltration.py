@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from continuum_sph.seepage import Frame, PoreFlow, Resistance, Seepage
-from continuum_sph.validation.seepage.setups import COLUMNS, WATER, water_in
+from continuum_sph.validation.seepage.setups import ALPHA, COLUMNS, WATER, water_in
 from continuum_sph.water.step import Flow
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
@@ -69,7 +69,7 @@ class Infiltration:
         x = square_lattice((0.0, self.height), size, spacing)
         return water_in(
             soil, x, WATER * GRAVITY * (size[1] - x[:, 1]), size, spacing, self.sound_speed, Resistance(self.porosity),
-            gravity=GRAVITY, cut=True, alpha=0.02, shifting=1.0,
+            gravity=GRAVITY, cut=True, alpha=ALPHA, shifting=1.0,
         )  # fmt: skip
 
     def reached(self, both: Seepage) -> float:
@@ -138,7 +138,7 @@ class Imbibition:
         x = square_lattice((0.0, self.height), size, spacing)
         both = water_in(
             soil, x, np.zeros(len(x)), size, spacing, self.sound_speed, Resistance(self.porosity), ratio=self.ratio,
-            cut=True, alpha=0.02,
+            cut=True, alpha=ALPHA,
         )  # fmt: skip
         both.water.before_force = self.drive
         return both

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.seepage import Frame, PoreFlow, PressureFace, Resistance, Seepage, Skeleton, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.pressure_face import in_columns
@@ -21,6 +22,7 @@ from porescale.common.neighbors import PairList
 WATER = 1000.0  # kg/m³
 GRAINS = 2650.0  # kg/m³
 SKIN = 0.15  # of the smoothing length
+ALPHA = float(NumericsSection.model_fields["artificial_viscosity"].default)  # as in every scene
 COLUMNS = 8  # particles across a periodic column: two cutoffs of 2h + skin and a little
 
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.seepage import Resistance, Seepage
 from continuum_sph.soil import Material, Rate, SoilFlow
-from continuum_sph.validation.seepage.setups import COLUMNS, GRAINS, WATER, water_in
+from continuum_sph.validation.seepage.setups import ALPHA, COLUMNS, GRAINS, WATER, water_in
 from continuum_sph.validation.soil.setups import in_tank
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
@@ -94,7 +94,7 @@ class WetSlope:
         both = water_in(
             ground, x.copy(), WATER * across * (depth - x[:, 1]), size, spacing, self.sound_speed, Resistance(n),
             grains=self.grains, permeability=self.permeability, gravity=across, modulus=material.column_modulus,
-            alpha=0.02, cut=True,
+            alpha=ALPHA, cut=True,
         )  # fmt: skip
         if self.seeping:
             both.water.law = replace(both.water.law, gravity=(GRAVITY * math.sin(tilt), -across))

@@ -58,7 +58,7 @@ for flow in ("poiseuille", "couette"):
     " artificial viscosity falls with the spacing, so a finer column comes to rest later",
 )
 def pressure(rows: float) -> float:
-    """With corrected gradients."""
+    """Largest error of pressure over that at the floor after 4 s, with corrected gradients."""
     return hydrostatic(4.0, rows=int(rows))[0]
 
 

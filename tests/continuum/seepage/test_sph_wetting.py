@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from continuum_sph import load
 from continuum_sph.builders.parts.phreatic import sagging, wetting_line
 from continuum_sph.validation.seepage.wetting import LEVEE, in_strips, lines
 
@@ -95,3 +96,15 @@ def test_strips_blunt_the_corner_of_a_line_the_less_the_narrower_they_are():
     # half a strip of four spacings is averaged over at the corner, of a line as long as the river is high
     assert [exact - sag for sag in sags] == pytest.approx([0.0] * 3, abs=0.5 * exact)
     assert exact - sags[-1] < 2.0 * 0.0075 / level
+
+
+def test_the_levee_of_the_row_is_that_of_the_case():
+    case, row = load("dry_levee"), LEVEE.scene(0.02)
+    assert (row.tank.width, row.tank.height) == pytest.approx((case.tank.width, case.tank.height))
+    assert row.water == case.water
+    for key in ("porosity", "permeability"):
+        assert getattr(row.soil, key) == getattr(case.soil, key)
+    assert sorted(row.soil.body[0].outline) == sorted(case.soil.body[0].outline)
+    assert [it.table for it in row.reservoir] == [it.table for it in case.reservoir]
+    sides = [[side for it in scene.reservoir for side in (it.left, it.right)] for scene in (row, case)]
+    assert sides[0] == pytest.approx(sides[1])
