@@ -15,9 +15,11 @@ the particles' places are: water at rest under its capillary fringe is exact.
 
 Walls and soil that ends let nothing through.  Places outside (`outside`) do: open water has H = its level and no
 resistance, so k_r = 1 there, and the half spacing of it that a pair crosses costs no head; into air water only leaves,
-with H_i - H_j = p_i/(ρ_w g), where p_i > 0: a seepage face to the first order in the spacing.  Air over water that a
-piece sees and lies below (y_i < level <= y_j) takes nothing: beside that piece the face is under water, and at rest,
-H_i = level, it would lose level - y_i > 0 within a kernel's reach below the waterline.
+with H_i - y_f > 0, y_f the height at which the pair crosses the surface, half a spacing before the place, and at least
+y_i: a seepage face to the first order in the spacing.  (With y_i for y_f soil full to a level surface drained until
+the second row below it was at 0, one and a half spacings.)  Air over water that a piece sees and lies below
+(y_i < level <= y_j) takes nothing: beside that piece the face is under water, and at rest, H_i = level, it would lose
+level - y_f > 0 within a kernel's reach below the waterline.
 
 Rates of all pieces advance together by a Runge-Kutta-Legendre scheme of the first order: s stages are stable for a step
 (s² + s)/2 times that of one (Meyer, Balsara & Aslam, J. Comput. Phys. 257 (2014) 594).  What it leaves of a wave that
@@ -48,6 +50,8 @@ CONTENT, FROM_WATER, TO_AIR = range(3)
 """Columns of what is advanced: water of a piece of soil, what of it came from open water and went to air, kg/m."""
 SAFE = 0.7
 """Share of the longest stable step that is taken: K and dH/dw grow within it where a front arrives."""
+PART, RISE = range(2)
+"""Columns of the weight of a pair of soil and a place: 1/m²;  how far the surface lies over the piece there, m."""
 CHANGE = 0.01
 """Of the pores: by how much one step may change what is in those of any piece."""
 MOST_STAGES = 25
@@ -91,9 +95,9 @@ def update_state(content, grains, permeability, retention, properties, state):
 
 @parallel_kernel
 def pair_weights(state, near, outer, place, weight, outer_weight):
-    """Overwrites ``weight`` (m,) and ``outer_weight`` (k,), 1/m²: -V_j (1/r) W' of every pair of soil and of
-    every place that a row of soil sees, the latter over the share of the pair that lies in soil; 0 of covered places,
-    and of air over water that the row sees and lies below.
+    """Overwrites ``weight`` (m,) and ``outer_weight`` (k, 2), of which the first, 1/m²: -V_j (1/r) W' of every pair of
+    soil and of every place that a row of soil sees, the latter over the share of the pair that lies in soil; 0 of
+    covered places, and of air over water that the row sees and lies below.  The second: y_f - y_i >= 0, m.
 
     state (s, 8): places and volumes;  near, outer: see `flow_rates`;  place: volume of a place, m².
     """
@@ -112,14 +116,18 @@ def pair_weights(state, near, outer, place, weight, outer_weight):
         below = state[i, Y] < level
         for k in range(np.uint64(outer.start[i]), np.uint64(outer.start[i + 1])):
             j = np.uint64(outer.partner[k])
-            outer_weight[k] = 0.0
+            outer_weight[k, PART] = 0.0
+            outer_weight[k, RISE] = 0.0
             submerged = below and outer.places[j, KIND] == 0.0 and outer.places[j, PY] >= level
             if outer.places[j, KIND] >= 0.0 and not submerged:
                 dx = image(state[i, X] - outer.places[j, PX], near.period_x)
                 dy = image(state[i, Y] - outer.places[j, PY], near.period_y)
                 distance = np.sqrt(dx * dx + dy * dy)
                 within = max(distance - half, half)
-                outer_weight[k] = -place * kernel_slope(near.kind, distance / near.h, near.h) * distance / within
+                slope = kernel_slope(near.kind, distance / near.h, near.h)
+                outer_weight[k, PART] = -place * slope * distance / within
+                if dy < 0.0 and distance > half:
+                    outer_weight[k, RISE] = -dy * (distance - half) / distance
 
 
 @inline
@@ -129,18 +137,18 @@ def outside_rate(i, state, permeability, outer, weight):
     weight: the outer one of `pair_weights`;  the rest: of `flow_rates`.
     """
     own = permeability[i] + state[i, CONDUCTIVITY]
-    pressed = state[i, PRESSURE] > 0.0
-    leaving = 2.0 * state[i, CONDUCTIVITY] if pressed else 0.0
+    head = state[i, HEAD] - state[i, Y]  # p/(ρ_w g), m
+    leaving = 2.0 * state[i, CONDUCTIVITY]
     taken, given, conductance = 0.0, 0.0, 0.0
     for k in range(np.uint64(outer.start[i]), np.uint64(outer.start[i + 1])):
         j = np.uint64(outer.partner[k])
         if outer.places[j, KIND] > 0.0:
-            taken += weight[k] * own * (outer.places[j, LEVEL] - state[i, HEAD])
-            conductance += weight[k] * own
-        else:
-            given += weight[k] * leaving
-            conductance += weight[k] * leaving
-    return taken, given * (state[i, HEAD] - state[i, Y]), conductance
+            taken += weight[k, PART] * own * (outer.places[j, LEVEL] - state[i, HEAD])
+            conductance += weight[k, PART] * own
+        elif head > weight[k, RISE]:
+            given += weight[k, PART] * leaving * (head - weight[k, RISE])
+            conductance += weight[k, PART] * leaving
+    return taken, given, conductance
 
 
 @parallel_kernel
@@ -231,13 +239,13 @@ class Moisture:
     resistance: Resistance | None = None
     content: Floats = field(init=False)
     state: Floats = field(init=False)
-    weight: Floats = field(init=False)  # (m,) and outer_weight (k,): of `pair_weights`, and room for more
+    weight: Floats = field(init=False)  # (m,) and outer_weight (k, 2): of `pair_weights`, and room for more
 
     def __post_init__(self) -> None:
         count = len(self.grains)
         self.given = self.permeability.copy()
         self.content, self.state = np.zeros((count, 3)), np.zeros((count, 8))
-        self.weight, self.outer_weight = np.zeros(0), np.zeros(0)
+        self.weight, self.outer_weight = np.zeros(0), np.zeros((0, 2))
         self._stages = [np.zeros((count, 3)) for _ in range(4)]
 
     def place(self, x: Floats, volume: Floats) -> None:
@@ -263,7 +271,7 @@ class Moisture:
         if len(self.weight) < len(near.partner):
             self.weight = np.zeros(len(near.partner) * 3 // 2)
         if len(self.outer_weight) < len(outer.partner):
-            self.outer_weight = np.zeros(len(outer.partner) * 3 // 2)
+            self.outer_weight = np.zeros((len(outer.partner) * 3 // 2, 2))
         pair_weights(self.state, near, outer, self.properties.place, self.weight, self.outer_weight)
 
     def rates(self, near: Neighbours, outer: Outer, rate: Floats) -> tuple[float, float]:
