@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
+import numpy as np
 import pydantic
 
 from continuum_sph.scene.air import AirSection
@@ -165,13 +166,7 @@ class Scene(SceneBase):
                           f"<= {finest:g}")
                 )  # fmt: skip
         faults += self._overlapping() + self._unseen() + look_faults(self)
-        columns = self.water.column
-        alone = len(columns) == 1 and columns[0].left == columns[0].bottom == 0.0
-        if self.water.pressure == "released" and columns and not alone:
-            faults.append(
-                Fault("water.pressure", "released", "is known for one column in the left corner only",
-                      repair='use "hydrostatic", or one column with left = bottom = 0')
-            )  # fmt: skip
+        faults += self._released()
         faults += self._misplaced()
         if 0.0 < self.gravity < WEAKEST:
             faults.append(Fault("gravity", self.gravity, "is too weak to move water", "m/s^2", f"0 or >= {WEAKEST:g}"))
@@ -192,6 +187,30 @@ class Scene(SceneBase):
                     problem = f"overlaps water.column[{j}] by {wide:g} x {high:g} m"
                     found.append(Fault(f"water.column[{k}]", None, problem, repair="move or narrow one of them"))
         return found
+
+    def _released(self) -> list[Fault]:
+        """A column let go whose pressure is not known: not in the left corner, or beside ground or under a lid, which
+        do not let it go."""
+        columns, spacing = self.water.column, self.numerics.spacing
+        if self.water.pressure != "released" or not columns:
+            return []
+        if not (len(columns) == 1 and columns[0].left == columns[0].bottom == 0.0):
+            return [Fault("water.pressure", "released", "is known for one column in the left corner only",
+                          repair='use "hydrostatic", or one column with left = bottom = 0')]  # fmt: skip
+        width, height, (inner, top) = columns[0].width, columns[0].height, self.inner
+        beside = ""
+        if self.soil is not None:
+            ends = (min(width + spacing, inner), min(height + spacing, top))
+            sides = [(np.arange(spacings(end, spacing)) + 0.5) * spacing for end in ends]
+            about = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 2)
+            beside = "beside ground" if any(body.holds(about).any() for body in self.soil.body) else ""
+        under = self.inclusion is None and self.tank.lid and height > top - 0.5 * spacing
+        if under and width < inner - 0.5 * spacing:  # as wide as the tank it is at rest
+            beside = beside or "under a lid"
+        if beside:
+            return [Fault("water.pressure", "released", f"is not known {beside}, of which the column is not free",
+                          repair='use "hydrostatic"')]  # fmt: skip
+        return []
 
     def _unseen(self) -> list[Fault]:
         """Probes and levels that lie outside of the tank, or whose names make no columns."""

@@ -236,9 +236,10 @@ def water_particles(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
         x = square_lattice(corner, (column.left + column.width, column.bottom + column.height), spacing)
         top = column.bottom + column.height
         depth = water.surface_over(x, np.full(len(x), top), 0.5 * spacing) - x[:, 1]
-        if water.pressure == "hydrostatic" or (water.pressure == "released" and scene.inclusion):
+        free = column.left + column.width < scene.inner[0] - 0.5 * spacing  # its right face, that of a wall is not
+        if water.pressure == "hydrostatic" or (water.pressure == "released" and (scene.inclusion or not free)):
             rho = tait.settled_density(depth, scene.gravity)
-        elif water.pressure == "released" and scene.inclusion is None:
+        elif water.pressure == "released":
             p = released_pressure(x[:, 0], x[:, 1], column.width, column.height, water.density, scene.gravity)
             rho = tait.density * (1.0 + p / tait.stiffness) ** (1.0 / tait.exponent)
         else:

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.initial_pressure import lattice_pressure, released_pressure
+from continuum_sph.builders.parts.water import water_flow
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
 from porescale.common.neighbors import square_lattice
 
 
@@ -37,3 +40,44 @@ def test_acceleration_is_continuous_across_a_layer_of_light_fluid():
     weights = density.reshape(-1, 8)[:, 0]
     steps = 0.5 * (weights[:-1] + weights[1:]) * GRAVITY * 0.05
     np.testing.assert_allclose(-np.diff(rows, axis=0), np.broadcast_to(steps[:, None], (19, 8)), rtol=1e-9)
+
+
+def let_go(width, column, **sections):
+    """A tank 0.6 m high and ``width`` (m) wide with a column of water 0.4 m high, let go."""
+    water = {"sound_speed": 20.0, "pressure": "released", "column": [{"width": column, "height": 0.4}]}
+    return tank_scene(width, 0.6, 0.05, water=water, **sections)
+
+
+def test_a_column_from_wall_to_wall_is_at_rest_when_let_go():
+    """It had the pressure of one whose right face is free, 0 at the right wall, and ran to it."""
+    scene = let_go(0.5, 0.5)
+    rest = scene.model_copy(update={"water": scene.water.model_copy(update={"pressure": "hydrostatic"})})
+    free = let_go(1.0, 0.5)  # the check that must fail
+    released, at_rest, let = (water_flow(it).layer.density for it in (scene, rest, free))
+    assert np.array_equal(released, at_rest)
+    assert not np.array_equal(let, at_rest)
+
+
+def ground(left):
+    outline = [[left, 0], [1.0, 0], [1.0, 0.4], [left, 0.4]]
+    return {"stiffness": 1e6, "permeability": 1e-2, "held": True, "body": [{"outline": outline}]}
+
+
+@pytest.mark.parametrize("left", [0.5, 0.3])  # beside it, and in it
+def test_a_column_beside_ground_is_not_let_go(left):
+    with pytest.raises(InputError, match="is not known beside ground"):
+        let_go(1.0, 0.5, soil=ground(left))
+
+
+def test_a_column_apart_from_ground_is():
+    assert let_go(1.0, 0.5, soil=ground(0.75)).water.pressure == "released"
+
+
+@pytest.mark.parametrize("lid", [True, False])
+def test_a_column_under_a_lid_is_not_let_go(lid):
+    water = {"sound_speed": 20.0, "pressure": "released", "column": [{"width": 0.5, "height": 0.6}]}
+    if lid:
+        with pytest.raises(InputError, match="is not known under a lid"):
+            tank_scene(1.0, 0.6, 0.05, water=water)
+    else:
+        assert tank_scene(1.0, 0.6, 0.05, water=water, lid=False)
