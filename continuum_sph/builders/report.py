@@ -1,5 +1,6 @@
 """The report of `check` on a scene before it runs."""
 
+from continuum_sph.builders.reports.effect_report import warn_without_effect
 from continuum_sph.builders.reports.seepage_report import seepage_report
 from continuum_sph.builders.reports.soil_report import soil_report
 from continuum_sph.builders.reports.suction_report import suction_report
@@ -16,6 +17,7 @@ def report(scene: Scene) -> Report:
         out = suction_report(scene)
     else:
         out = soil_report(scene) if scene.dry else seepage_report(scene)
+    warn_without_effect(scene, out)
     settle = 0.0 if scene.soil.held else scene.soil.numerics.settle
     if settle >= scene.time.end:
         out.warn(
