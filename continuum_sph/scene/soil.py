@@ -122,11 +122,12 @@ class SoilSection(Section):
     friction_angle : φ; tan φ = 0.5 of Maeda & Sakai 2004 is sin φ = 0.5, 30 degrees;  modulus : "printed" is their
     eq. 43, of plane stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would
     settle), "none", or "unconsolidated": none, and the water of its full pores bears its weight;  exponent : from
-    stress "none" diffusion of stress, which levels it as the weight comes on, makes soil stiffer before it is strained:
-    a column of 12, 24 and 48 rows with m = 0.5 settles 25, 15 and 9 % too little, and 2.4, 1.6 and 1.3 % with
-    numerics.stress_diffusion = 0; without an exponent 1.4 and 0.8 % (12 and 24 rows);  permeability : the
-    hydraulic conductivity k of full pores, under 9.81 m/s² whatever the scene's gravity is, but with ``suction`` under
-    that of the scene;  permeability_law : how k follows the porosity;
+    stress "none" diffusion of stress, which levels it as the weight comes on, would make soil stiffer before it is
+    strained: a column of 12, 24 and 48 rows with m = 0.5 settled 25, 15 and 9 % too little.  So there, unless
+    numerics.stress_diffusion is given, it begins when numerics.settle ends: 2.8 and 1.7 % (12 and 24 rows, settled in
+    0.6 s; 12 % of 12 rows where settle ends half-way);  permeability : the hydraulic conductivity k of full pores,
+    under 9.81 m/s² whatever the scene's gravity is, but with ``suction`` under that of the scene;  permeability_law :
+    how k follows the porosity;
     hydraulic_share : see `continuum_sph.seepage.resistance`;  floor, sides : of the tank, "hold" the
     soil or let it "slip".
     """
@@ -143,7 +144,7 @@ class SoilSection(Section):
     reference: float = quantity("Pa", 1e5, ge=1e-3, le=1e12, help="mean stress at which it is given")
     exponent: float = quantity(
         "", 0.0, ge=0, le=1,
-        help='m: how stiffness grows with mean stress; from stress "none" 24 rows settle 15 % too little at 0.5',
+        help='m: how stiffness grows with mean stress; from stress "none" give numerics.settle, too',
     )  # fmt: skip
     least: float = quantity("Pa", 100.0, ge=1e-6, le=1e12, help="mean stress below which soil gets no softer")
     poisson: float = quantity("", 0.3, ge=0, le=0.49, help="Poisson's ratio")
@@ -199,6 +200,11 @@ class SoilSection(Section):
             if body.permeability is not None:
                 k[body.holds(points)] = body.permeability
         return k
+
+    @property
+    def loads_from_none(self) -> bool:
+        """Whether its weight comes on a soil without stress, whose stiffness grows with it."""
+        return self.stress == "none" and self.exponent > 0.0
 
     @property
     def permeabilities(self) -> tuple[float, float]:

@@ -143,8 +143,9 @@ class SoilFlow:
         if self.before_force is not None:
             self.before_force(self)
         self.update_walls()
+        diffusion = law.diffusion if self.time >= law.level_from else 0.0
         choices = Choices(
-            *law.gravity, law.damping, law.printed_damping, law.diffusion, law.sound_diffusion * self.sound_rate,
+            *law.gravity, law.damping, law.printed_damping, diffusion, law.sound_diffusion * self.sound_rate,
             law.spacing_recovery, law.parted(self.strained), law.spacing,
         )  # fmt: skip
         accelerate(

@@ -48,7 +48,8 @@ class SoilLaw:
     than a spacing part, per shear strain, 0: soil does not swell either;  repulsion : A of `tension`, where soil bears
     tension;  drag : 1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin :
     turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49;  averages : over neighbours, of what
-    shears in a step, where soil softens, see `softening`.
+    shears in a step, where soil softens, see `softening`;  level_from : time (s) from
+    which on stress and volume diffuse.
     """
 
     smoothing: Smoothing
@@ -67,6 +68,7 @@ class SoilLaw:
     printed_spin: bool = False
     courant: float = 0.25
     averages: int = 1
+    level_from: float = 0.0
 
     def __post_init__(self) -> None:
         """InputError when diffusion at the rate of sound takes more of a zig-zag in a step than there is."""
