@@ -180,9 +180,9 @@ def sliding_row() -> Measured:
 @VALIDATIONS.row(
     "continuum.levee_stands_by_suction",
     source="Maeda & Sakai 2004, fig. 15: it is the rise that fails it; slices give a factor of 1.2 at the low river",
-    because="a slope of 1 : 2 is at its limit without suction, and its toe, which seepage leaves there, moves by 0.025 "
-    "in these 2 s: a third of that",
-    tolerance=0.0082,
+    because="a slope of 1 : 2 is at its limit without suction, and its toe, which seepage leaves there, moves by 0.118 "
+    "in these 2 s: a tenth of that",
+    tolerance=0.0118,
     slow=True,
 )
 def standing_row() -> Measured:

@@ -62,6 +62,6 @@ def test_the_rows_of_the_levee_hold(row):
 
 
 @pytest.mark.slow
-def test_without_suction_its_toe_moves_three_times_as_far_as_it_may():  # the twin that must fail
+def test_without_suction_its_toe_moves_ten_times_as_far_as_it_may():  # the twin that must fail
     rows = np.array([row for row, _ in replace(KEPT, alpha=200.0).course()])
-    assert rows[:, 1:4].max() / KEPT.height > 2.9 * ROWS["continuum.levee_stands_by_suction"].tolerance
+    assert rows[:, 1:4].max() / KEPT.height > 9.9 * ROWS["continuum.levee_stands_by_suction"].tolerance
