@@ -17,7 +17,7 @@ SPACING = 0.05  # m
 DEPTH = 1.0  # m
 Table = dict[str, Any]
 
-NUMERICS: Table = {"artificial_viscosity": 0.1, "gradient": "corrected"}
+NUMERICS: Table = {"gradient": "corrected"}
 GROUND: Table = {"stiffness": 2e6, "friction_angle": "30 degree", "body": [level_ground(0.5, 1.0)]}
 
 
@@ -32,10 +32,15 @@ def still(**numerics: Any) -> Scene:
 
 
 def sloshing() -> Scene:
-    """200 particles of water that fall down from one half of a tank and go to and fro."""
+    """200 particles of water that fall down from one half of a tank and go to and fro.
+
+    With 0.02 of artificial viscosity, and corrected gradients without shifting, they still do after 450 000 steps, and
+    have lost 28 % of their room.
+    """
     column = {"width": 0.5, "height": DEPTH}
     given: Table = {"width": 1.0, "height": 1.5, "lid": True}
-    return tank(tank=given, water={"column": [column], "pressure": "released"})
+    return tank(tank=given, water={"column": [column], "pressure": "released"},
+                numerics=NUMERICS | {"artificial_viscosity": 0.1})  # fmt: skip
 
 
 def ground() -> Scene:
@@ -52,7 +57,7 @@ def wet_ground() -> Scene:
     soil = GROUND | {"permeability": 1e-3, "body": [level_ground(0.5, 0.5)]}
     water = {"column": [{"width": 0.5, "height": 0.8}], "sound_speed": 80.0}
     read = {"probe": [{"x": 0.25, "y": 0.25}], "level": [{"x": 0.25}]}
-    return tank(soil=soil, water=water, numerics={"artificial_viscosity": 0.1}, **read)
+    return tank(soil=soil, water=water, numerics={}, **read)
 
 
 class Tank:
