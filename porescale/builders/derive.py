@@ -17,6 +17,7 @@ from porescale.builders.checks.packing import beside_the_bed, check_compressed, 
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.builders.checks.prescribed import check_controls, check_motions
 from porescale.builders.checks.regime import check_regime, expected_speed, too_soft, travel_step
+from porescale.builders.checks.wall_places import hammering
 from porescale.builders.initial.clumps import lightest, undisplaced_clumps
 from porescale.builders.initial.contact_laws import MaterialPlan, densities_of_bodies, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, longest_of, placed_frames, sizes_of
@@ -122,6 +123,7 @@ def derive(scene: Scene) -> Derived:
                 f"thickness, where a run stops; {SAFETY * travel:.2g} s is safe"
             )
         warnings += filter(None, [too_soft(scene, scales, sizes, (law, wall_law), frames)])
+        warnings += hammering(scene, mean_mass, sizes[1], wall_law)
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and law and scene.grains:
