@@ -108,9 +108,11 @@ def _of_section(fault: Fault, key: str) -> Fault:
     name = fault.key.removeprefix("frame.").removeprefix("clump.")
     value = fault.value if isinstance(fault.value, int | float | str) else None
     repair = fault.repair
-    if "crosses itself" in fault.problem:
+    if "between these segments" in fault.problem:
         value = f"corners {fault.value[0]} and {fault.value[1]}" if isinstance(fault.value, tuple) else None
         repair = "give the corners in their order round the outline"
+        if "spike" in fault.problem:
+            repair = "leave the corner at its tip out"
     elif fault.key == "frame.corners":
         repair = "leave out points that coincide"
     return replace(fault, key=f"{key}.{name}", value=value, repair=repair)

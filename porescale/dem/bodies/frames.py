@@ -46,7 +46,7 @@ class Frame:
     body : mass, centroid and inertia by hand.
 
     Raises InputError where there is no segment, one without length, a corner without a segment, a polygon that
-    crosses itself or has no area, or no mass.
+    crosses itself, has a spike or no area, or no mass.
     """
 
     corners: Corners
@@ -77,7 +77,10 @@ class Frame:
             raise InputError(Fault("frame.corners", None, "the polygon has no area: its corners lie on one line"))
         if self.closed and (crossing := _crossing(at[self.loop])) is not None:
             numbers = tuple(self._segment(crossed) for crossed in crossing)
-            raise InputError(Fault("frame.corners", numbers, "the polygon crosses itself between these segments"))
+            problem = "the polygon crosses itself between these segments"
+            if len({*self.ends[numbers[0]], *self.ends[numbers[1]]}) == 3:  # they share a corner
+                problem = "the polygon goes out and back along one line: a spike between these segments"
+            raise InputError(Fault("frame.corners", numbers, problem))
         if not self.mass_properties().mass > 0.0:
             raise InputError(Fault("frame.width", self.width, "rods without thickness have no mass", "m", "> 0"))
 
@@ -191,13 +194,19 @@ def _flat(at: Floats) -> bool:
 
 
 def _crossing(at: Floats) -> tuple[int, int] | None:
-    """Numbers of two sides of a polygon (k, 2) m, by their first corners, that cross; None if none do."""
+    """Numbers of two sides of a polygon (k, 2) m, by their first corners, that cross, or of two in a row of which the
+    second goes back along the first; None if none do."""
 
     def left(a: Floats, b: Floats, c: Floats) -> float:
         """Twice the area of the triangle a, b, c, m²: > 0 where c lies left of the way from a to b."""
         return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
     count = len(at)
+    for i in range(count):
+        a, b, c = at[i], at[(i + 1) % count], at[(i + 2) % count]
+        out, back = b - a, c - b
+        if out @ back < 0.0 and abs(left(a, b, c)) <= JOINED * float(np.hypot(*out) * np.hypot(*back)):
+            return i, (i + 1) % count
     for i in range(count):
         a, b = at[i], at[(i + 1) % count]
         for j in range(i + 2, count - (i == 0)):

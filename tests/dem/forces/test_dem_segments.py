@@ -73,6 +73,9 @@ def test_a_tee_is_a_frame_of_rods():
     ("make", "key"),
     [
         (lambda: polygon([(0, 0), (1, 1), (1, 0), (0, 1)], 0.1, 1.0), "crosses itself"),
+        (lambda: polygon([(0, 0), (2, 0), (1, 0), (1, 1)], 0.1, 1.0), "a spike"),
+        (lambda: polygon([(0, 0), (1, 0), (1, 1), (1, -1)], 0.1, 1.0), "a spike"),
+        (lambda: polygon([(1, 1), (0, 0), (1, 0), (1, 3)], 0.1, 1.0), "a spike"),
         (lambda: polygon([(0, 0), (1, 1), (2, 2)], 0.1, 1.0), "has no area"),
         (lambda: polygon([(0, 0), (2, 2), (1, 1), (3, 3)], 0.1, 1.0), "has no area"),
         (lambda: chain([(0, 0), (0, 0)], 0.1, 1.0), "no length"),
