@@ -91,14 +91,16 @@ class SoilNumerics(Section):
     Maeda & Sakai 2004: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
     parting : with 0 soil does not swell where its particles crowd, either.
     damping, damping_viscosity, stress_diffusion : left out, they follow from gravity and the ground's height and
-    stiffness, see `continuum_sph.soil.steadying`; "approach" has 0.2.
+    stiffness, see `continuum_sph.soil.steadying`; "approach" and "bounded" have 0.2.
+    damping_of : "bounded", for slides that begin slowly: zig-zags are damped by 4 % of the shear stress at most, and
+    stress diffuses where soil yields.  Fast failures of full ground come late with few rows.
     """
 
     gradient: Literal["corrected", "plain"] = pydantic.Field(
         default="corrected", description="gradients of the velocity"
     )
     damping: float | None = quantity("", None, ge=0, le=4, help="alpha of the damping")
-    damping_of: Literal["zig-zags", "approach"] = pydantic.Field(
+    damping_of: Literal["zig-zags", "approach", "bounded"] = pydantic.Field(
         default="zig-zags", description="what the damping acts on"
     )
     damping_viscosity: float | None = quantity("m^2/s", None, ge=0, le=1e6, help="alpha c h, in place of damping")

@@ -126,7 +126,8 @@ class SoilFlow:
             soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.separation_strain,
             soil.plastic_shear, self.sheared, soil.record,
             Straining(
-                step, min(step, LASTING * self.strained), spin, law.most, law.damping / law.smoothing.length, law.even
+                step, min(step, LASTING * self.strained), spin, law.most, law.damping / law.smoothing.length, law.even,
+                law.bounded,
             ),
         )  # fmt: skip
         if self.sheared.size:
@@ -146,7 +147,7 @@ class SoilFlow:
         diffusion = law.diffusion if self.time >= law.level_from else 0.0
         choices = Choices(
             *law.gravity, law.damping, law.printed_damping, diffusion, law.sound_diffusion * self.sound_rate,
-            law.spacing_recovery, law.parted(self.strained), law.spacing,
+            law.spacing_recovery, law.parted(self.strained), law.spacing, law.bounded,
         )  # fmt: skip
         accelerate(
             soil.soil, soil.record, soil.facing, soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift,

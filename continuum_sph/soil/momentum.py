@@ -9,11 +9,18 @@ w is the velocity difference of the pair less what the mean of both gradients ma
 gradients, and so stress, do not contain.  Zig-zags in it would persist, as nothing resists them.  Eq. 36 damps the
 whole difference where particles approach, and with it flow itself.
 
+Particles that slip past each other across two rows differ by what gradients do not contain, too, so this holds a slip
+back by as much as it is fast: a slab on a weak seam reaches a tenth of its acceleration with 20 rows.  ``bounded``, the
+most that a pair damps is DAMPED_BY of s, the largest shear stress of its particles, whatever the velocities are: of the
+strength, where soil yields.  Across a plane that slips damping bears 2/π of that in the mean of directions,
+|sin θ cos θ| over cos² θ: `HELD_BACK` of the strength.
+
 Zig-zags in stress cause no force and persist too.  Stress diffuses, dσ_i/dt = -χ h² γ' Σ V_j (σ_j - σ_i) (1/r) W', but
-at the rate of shear strain γ' (mean of the pair), not of sound as in Feng, Fourtakas, Rogers & Lombardi,
-Comput. Geotech. 138 (2021) 104356 and its kin: what is smoothed at the rate of sound must be strained anew for ever to
-carry its weight, so soil at rest creeps.  In the same way particles nearer than a spacing are moved apart, by x_ij A γ'
-(1 - r²/spacing²), only while soil is sheared, and away from walls.  Both are opposite in a pair of soil.  Each has its
+at the rate of shear strain γ' (mean of the pair; with ``bounded`` damping that of plastic strain: nothing diffuses
+within the strength), not of sound as in Feng, Fourtakas, Rogers & Lombardi, Comput. Geotech. 138 (2021) 104356 and its
+kin: what is smoothed at the rate of sound must be strained anew for ever to carry its weight, so soil at rest creeps.
+In the same way particles nearer than a spacing are moved apart, by x_ij A γ' (1 - r²/spacing²), only while soil is
+sheared, and away from walls.  Both are opposite in a pair of soil.  Each has its
 own bound on γ' Δt, `parameters.SoilLaw.most` and `PARTED`: diffusion is far the stiffer, and particles that parted at
 its bounded rate would crowd where soil shears fast, on the floor of a layer that slides (by two thirds in 6 s on 32°,
 with 20 rows, if soil did not swell there, see `stress`), as no density of theirs shows it.
@@ -32,6 +39,7 @@ free surface partners are missing on one side, so p that grows with depth gains:
 1 % in the second, a strength that falls with the spacing.  Weighted by volume, what one gains its partner loses.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,12 +80,17 @@ from porescale.common.compiled.simd import (
 )
 
 SOFTENING = 0.01  # of h²: keeps the quotient finite when two centres coincide
+DAMPED_BY = 0.04
+"""Most that a pair is damped by, over the largest shear stress, where damping is bounded."""
+HELD_BACK = DAMPED_BY * 2.0 / math.pi
+"""Share of the strength that damping bears at most, where all on one side of a plane slips over the other."""
+UNBOUND = 1e30  # Pa, in place of a stress: the bound of what has none
 
 
 class Choices(NamedTuple):
     """gx, gy: gravity, m/s²;  damping: α;  printed: damping as eq. 36;  diffusion: χ;  sound_diffusion: the same by
     sound, 1/s;  spacing_recovery: A;  fastest: rate of shear strain up to which particles part, 1/s;  spacing of the
-    particles, m."""
+    particles, m;  bounded: damping bears a share of the shear stress at most."""
 
     gx: Any
     gy: Any
@@ -88,6 +101,7 @@ class Choices(NamedTuple):
     spacing_recovery: Any
     fastest: Any
     spacing: Any
+    bounded: Any
 
 
 @parallel_kernel
@@ -125,11 +139,13 @@ def soil_forces(i, record, stress, near, choices):
     """
     kind, h, inverse_h, scale = near.kind, near.h, 1.0 / near.h, slope_scale(near.kind, near.h)
     soft, damping = SOFTENING * h * h, 0.5 * choices.damping * h
+    share = 0.5 * DAMPED_BY / damping if damping > 0.0 else 1.0  # in units of what `damping` multiplies
     by_strain = -0.5 * h * h * choices.diffusion  # of both strain rates together, twice their mean
     by_sound = -h * h * choices.sound_diffusion
     inverse_spacing2 = 1.0 / (choices.spacing * choices.spacing)
     turns_x, turns_y = inverse_period(near.period_x), inverse_period(near.period_y)
     linear, most = undamped(choices.printed)
+    slack = 0.0 if choices.bounded else UNBOUND
     xi, yi, vxi, vyi = record[i, X], record[i, Y], record[i, VX], record[i, VY]
     bulk = record[i, VOLUME]
     own = bulk / record[i, MASS]
@@ -137,6 +153,7 @@ def soil_forces(i, record, stress, near, choices):
     txx, txy, tyx, tyy = record[i, TXX], record[i, TXY], record[i, TYX], record[i, TYY]
     gxx, gxy, gyx, gyy = record[i, GXX], record[i, GXY], record[i, GYX], record[i, GYY]
     xx, yy, xy, zz = stress[i, XX], stress[i, YY], stress[i, XY], stress[i, ZZ]
+    twice = 2.0 * largest_shear(xx, yy, xy) + slack  # of this particle
     fastest, shearing = choices.fastest, parting_rate(i, record, choices)
     bx, by, wx, wy, grown = zeros(), zeros(), zeros(), zeros(), zeros()
     rxx, ryy, rxy, rzz, around, crowd = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
@@ -156,6 +173,9 @@ def soil_forces(i, record, stress, near, choices):
         part = volume * slope
         damping_term = (sound + sound_j) * approach * mass * slope / (distance2 + soft)
         stress_term = own * part
+        bound = share * (twice + sqrt((xx_j - yy_j) * (xx_j - yy_j) + 4.0 * xy_j * xy_j))
+        bound *= maximum(stress_term, 0.0 - stress_term)
+        damping_term = maximum(0.0 - bound, minimum(bound, damping_term))
         bx += damping * damping_term * dx - stress_term * ((txx + txx_j) * dx + (txy + txy_j) * dy)
         by += damping * damping_term * dy - stress_term * ((tyx + tyx_j) * dx + (tyy + tyy_j) * dy)
         around -= part * ((xx_j - xx) + (yy_j - yy))
@@ -185,6 +205,12 @@ def parting_rate(i, record, choices):
 
 
 @inline
+def largest_shear(xx, yy, xy):
+    """The largest shear stress of a stress (Pa): half of what its principal stresses differ by."""
+    return np.sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy)
+
+
+@inline
 def undamped(printed):
     """(share of both gradients that velocities are not damped of;  largest closing that is damped, m²/s)."""
     if printed:
@@ -203,6 +229,7 @@ def with_wall_forces(i, record, facing, stress, near, choices, sums, around):
     soft, damping = SOFTENING * h * h, 0.5 * choices.damping * h
     inverse_spacing2 = 1.0 / (choices.spacing * choices.spacing)
     linear, most = undamped(choices.printed)
+    sheared = 2.0 * largest_shear(stress[i, XX], stress[i, YY], stress[i, XY]) + (0.0 if choices.bounded else UNBOUND)
     own = record[i, VOLUME] / record[i, MASS]
     shearing = parting_rate(i, record, choices)
     for w in range(np.uint64(near.split[i]), np.uint64(near.start[i + 1])):
@@ -221,6 +248,8 @@ def with_wall_forces(i, record, facing, stress, near, choices, sums, around):
         stress_term = own * record[j, VOLUME] * slope
         sound = record[i, SOUND_OVER_DENSITY]
         damping_term = 2.0 * damping * sound * approach * record[j, MASS] * slope / (distance2 + soft)
+        bound = DAMPED_BY * abs(stress_term) * sheared
+        damping_term = max(min(damping_term, bound), -bound)
         txx, txy = record[i, TXX] + record[j, TXX], record[i, TXY] + record[j, TXY]
         tyx, tyy = record[i, TYX] + record[j, TYX], record[i, TYY] + record[j, TYY]
         ax += damping_term * dx - stress_term * (txx * dx + txy * dy)

@@ -42,9 +42,10 @@ class SoilLaw:
 
     smoothing : kernel and h;  spacing : of the particles, m;  materials : by the numbers that particles carry;
     gravity : (x, y) m/s²;  damping : α, of the part of velocity differences that is not linear in place, or with
-    ``printed_damping`` of all of it between particles that approach (eq. 36);  corrected : gradients exact for linear
-    fields;  diffusion : χ of stress and volume, per shear strain, see `momentum`;  sound_diffusion : the same per
-    passage of sound through h, which never rests (for comparison);  spacing_recovery : A, how fast particles nearer
+    ``printed_damping`` of all of it between particles that approach (eq. 36);  bounded : damping bears a share of the
+    shear stress at most, and stress diffuses by plastic strain alone, see `momentum`;  corrected : gradients exact for
+    linear fields;  diffusion : χ of stress and volume, per shear strain, see `momentum`;  sound_diffusion : the same
+    per passage of sound through h, which never rests (for comparison);  spacing_recovery : A, how fast particles nearer
     than a spacing part, per shear strain, 0: soil does not swell either;  repulsion : A of `tension`, where soil bears
     tension;  drag : 1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin :
     turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49;  averages : over neighbours, of what
@@ -58,6 +59,7 @@ class SoilLaw:
     gravity: tuple[float, float]
     damping: float = 0.2
     printed_damping: bool = False
+    bounded: bool = False
     corrected: bool = True
     diffusion: float = 100.0
     sound_diffusion: float = 0.0

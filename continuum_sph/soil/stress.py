@@ -37,7 +37,7 @@ CROWDED = 1.6
 class Straining(NamedTuple):
     """step, s;  spreading: for how long diffusion lasts, s;  spin: 1, or -1 for the sign of eq. 38 in Maeda & Sakai
     2004;  most: shear strain of a step that `accelerate` follows;  damping: α/h, 1/m;  even: `CROWD` beyond which
-    sheared soil swells."""
+    sheared soil swells;  plastic: stress diffuses by plastic shear strain, not by all of it."""
 
     step: Any
     spreading: Any
@@ -45,6 +45,7 @@ class Straining(NamedTuple):
     most: Any
     damping: Any
     even: Any
+    plastic: Any
 
 
 @parallel_kernel
@@ -105,6 +106,8 @@ def deform(
         taken = straining.damping * np.sqrt(speed2) * step * max(1.0, spread[i, CROWD])
         record[i, SOUND_OVER_DENSITY] = np.sqrt(speed2) / density[i] * (DAMPED_MOST / max(DAMPED_MOST, taken))
         bound = most / max(1.0, spread[i, CROWD] / CROWDED)
+        if straining.plastic:
+            shearing = flow / step if step > 0.0 else 0.0
         record[i, SHEAR_RATE] = shearing if shearing * step <= bound else bound / step
         turn = (xx - yy) * matrix[i, 3] - xy * matrix[i, 4]
         record[i, TXX] = xx * kxx + xy * kxy

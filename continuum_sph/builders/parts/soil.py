@@ -287,7 +287,7 @@ def damping_of(section: SoilSection, numerics: NumericsSection, steady: float) -
         return choice.damping_viscosity / (sound * numerics.smoothing_ratio * numerics.spacing)
     if choice.damping is not None:
         return choice.damping
-    return WEIGHTLESS[0] if choice.damping_of == "approach" else steady
+    return steady if choice.damping_of == "zig-zags" else WEIGHTLESS[0]
 
 
 def soil_law(scene: Scene) -> SoilLaw:
@@ -308,6 +308,7 @@ def soil_law(scene: Scene) -> SoilLaw:
         (0.0, -scene.gravity),
         damping=damping_of(section, numerics, damping),
         printed_damping=choice.damping_of == "approach",
+        bounded=choice.damping_of == "bounded",
         corrected=choice.gradient == "corrected",
         diffusion=diffusion if choice.stress_diffusion is None else choice.stress_diffusion,
         sound_diffusion=choice.restless_diffusion,

@@ -66,7 +66,7 @@ class EnergyBudget:
         undamped = self.bare[0]
         accelerate(
             n, soil.record, soil.facing, soil.force, soil.stress, *self.bare, flow.near,
-            Choices(*law.gravity, 0.0, False, law.diffusion, 0.0, 0.0, 0.0, law.spacing),
+            Choices(*law.gravity, 0.0, False, law.diffusion, 0.0, 0.0, 0.0, law.spacing, False),
         )  # fmt: skip
         turned["stress"] += step * self.taken(0.5 * (before + soil.stress[:n]))
         pushed = float((mass * (soil.v[:n] * (undamped - lean)).sum(axis=1)).sum())

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from continuum_sph.soil import Rate
-from continuum_sph.validation.soil import fast_flow, softening
+from continuum_sph.validation.soil import fast_flow, slides, softening
 from continuum_sph.validation.soil.run_outs import (
     BEADS,
     RUBBING_BEADS,
@@ -58,6 +58,22 @@ for name, title, because, options in (
 def slip_error(rows: float) -> float:
     """Of a layer of clay that is sheared slowly."""
     return softening.course(int(rows))
+
+
+@LADDERS.ladder(
+    "soil.slide_on_a_seam",
+    title="Relative error of the acceleration of a slab that slides on a weak seam a tenth of the layer thick, damping "
+    "bounded",
+    along="rows of particles of the layer",
+    levels=slides.LEVELS,
+    expected=1.0,
+    within=0.5,
+    because="damping bears less of a seam the more rows it has, and where it slips is known to half a spacing; what is "
+    "left at 80 rows is the swing of the slab, a hundredth",
+)
+def slide_error(rows: float) -> float:
+    """Of the acceleration of what lies over the seam."""
+    return abs(slides.acceleration(int(rows)) / slides.EXACT - 1.0)
 
 
 @LADDERS.ladder(

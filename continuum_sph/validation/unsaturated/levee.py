@@ -36,7 +36,7 @@ class Levee(FullLevee):
     alpha 1/m, sharp, residual : α, n, S_r of van Genuchten.
     """
 
-    low: float = 0.3
+    low: float = 0.2
     permeability: float = 0.3
     alpha: float = 8.0
     sharp: float = 3.0
@@ -111,7 +111,7 @@ class Levee(FullLevee):
 
 
 STANDARD = Levee(end=4.5)
-KEPT = Levee(high=0.3, end=2.5)
+KEPT = Levee(high=Levee.low, end=2.5)
 """The river kept low, for as long as it takes the other to fail."""
 SLID = 0.05  # of the height, that the toe slides after its factor is 1
 
@@ -180,9 +180,8 @@ def sliding_row() -> Measured:
 @VALIDATIONS.row(
     "continuum.levee_stands_by_suction",
     source="Maeda & Sakai 2004, fig. 15: it is the rise that fails it; slices give a factor of 1.2 at the low river",
-    because="a slope of 1 : 2 is at its limit without suction, and its toe, which seepage leaves there, moves by 0.118 "
-    "in these 2 s: a tenth of that",
-    tolerance=0.0118,
+    because="a slope of 1 : 2 is at its limit without suction, and moves by 0.0106 in these 2 s: a third of that",
+    tolerance=0.0035,
     slow=True,
 )
 def standing_row() -> Measured:

@@ -87,7 +87,7 @@ def test_kernels_run_as_plain_python(monkeypatch):
     arrays = ("record", "matrix", "density", "stress", "separation_strain", "plastic_shear", "acceleration", "spread")
     first = {name: getattr(soil, name).copy() for name in arrays}
     made = (soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift)
-    choices = Choices(0.0, -9.8, 1.0, False, 100.0, 0.0, 4.0, np.inf, law.spacing)
+    choices = Choices(0.0, -9.8, 1.0, False, 100.0, 0.0, 4.0, np.inf, law.spacing, False)
 
     def found(gradients, strain, push):
         """Records after gradients, and accelerations after all three, from the same start."""
@@ -97,7 +97,7 @@ def test_kernels_run_as_plain_python(monkeypatch):
         record = soil.record.copy()
         strain(
             soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread, soil.separation_strain,
-            soil.plastic_shear, np.zeros(0), soil.record, Straining(1e-4, 1e-4, 1.0, law.most, 0.0, law.even),
+            soil.plastic_shear, np.zeros(0), soil.record, Straining(1e-4, 1e-4, 1.0, law.most, 0.0, law.even, False),
         )  # fmt: skip
         push(soil.soil, soil.record, soil.facing, *made, flow.near, choices)
         return record, soil.acceleration.copy()

@@ -53,7 +53,7 @@ def test_volumes_diffuse_where_soil_is_sheared_and_their_sum_stays():
     deform(
         soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread,
         soil.separation_strain, soil.plastic_shear, np.zeros(0), soil.record,
-        Straining(1e-3, 1e-3, 1.0, law.most, 0.0, law.even),
+        Straining(1e-3, 1e-3, 1.0, law.most, 0.0, law.even, False),
     )  # fmt: skip
     np.testing.assert_allclose(mass / soil.density, volume + 1e-3 * grown, rtol=4 * np.finfo(float).eps)
 

@@ -14,7 +14,7 @@ from tests.validation.tolerances import ROWS
 
 def test_its_scene_has_suction_and_no_particles_of_water():
     scene = Scene.model_validate(Levee().table())
-    assert scene.soil.suction.water_table == pytest.approx(0.3)
+    assert scene.soil.suction.water_table == pytest.approx(0.2)
     assert not scene.water.column
     assert [it.name for it in scene.reservoir] == ["river"]
 
@@ -62,6 +62,6 @@ def test_the_rows_of_the_levee_hold(row):
 
 
 @pytest.mark.slow
-def test_without_suction_its_toe_moves_ten_times_as_far_as_it_may():  # the twin that must fail
+def test_without_suction_it_moves_three_times_as_far_as_it_may():  # the twin that must fail
     rows = np.array([row for row, _ in replace(KEPT, alpha=200.0).course()])
-    assert rows[:, 1:4].max() / KEPT.height > 9.9 * ROWS["continuum.levee_stands_by_suction"].tolerance
+    assert rows[:, 1:4].max() / KEPT.height > 2.9 * ROWS["continuum.levee_stands_by_suction"].tolerance

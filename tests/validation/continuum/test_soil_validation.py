@@ -9,7 +9,18 @@ import pytest
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.soil import Material, Rate, SoilLaw, flow, parameters
-from continuum_sph.validation.soil import bodies, element, energy, fast_flow, run_outs, setups, slopes, softening
+from continuum_sph.validation.soil import (
+    bodies,
+    element,
+    energy,
+    fast_flow,
+    rods,
+    run_outs,
+    setups,
+    slides,
+    slopes,
+    softening,
+)
 from tests.reference.continuum import continuum_cases
 from tests.reference.continuum.continuum_cases import missed
 from tests.reference.folders import script
@@ -200,6 +211,17 @@ def test_soil_under_tension_without_repulsion_flies_to_pieces():
 def test_damping_that_goes_with_sound_makes_run_out_depend_on_stiffness():
     soft, stiff = energy.run_outs(rows=10, damping=0.05)
     assert soft - stiff > 3.0 * tolerance("continuum.soil_runs_out_alike_at_any_stiffness")
+
+
+@pytest.mark.slow
+def test_damping_without_a_bound_holds_a_slide_back():
+    found = slides.acceleration(20, bounded=False) / slides.EXACT
+    assert 1.0 - found > 5.0 * tolerance("continuum.soil_slides_on_a_seam")
+
+
+@pytest.mark.slow
+def test_rods_whose_friction_knows_no_rate_run_out_too_far():
+    assert rods.rods_error(20, None) > 1.2 * tolerance("continuum.soil_runs_out_as_rods")
 
 
 @pytest.mark.slow
