@@ -163,8 +163,8 @@ def followed(given: Levee = STANDARD, until: float = 0.1) -> Course:
     "continuum.levee_slides_as_its_factor_falls",
     source="Newton's law of a mass on a slope of 1 : 2 whose factor of safety by Bishop's method of slices falls as 1 "
     "- f t under the computed pore pressures: g sin β f t³/6 = 0.05 H",
-    because="a third of the time, chosen and not derived: the law is of a block, and the levee, which has moved by"
-    " 0.045 H before, is none",
+    because="a third of the time, chosen and not derived: the law is of a block, and the levee, whose "
+    "slide begins at its toe, is none",
     tolerance=0.35,
     slow=True,
 )
