@@ -59,6 +59,16 @@ def test_straight_lines_between_pixels_are_biased(monkeypatch):
     assert np.abs(lab.bias(2.0, [0.3, 0.7])).max() > tolerance("piv.sub_pixel_bias_of_small_tracers")
 
 
+def test_a_large_displacement_has_the_bias_of_a_small_one_away_from_the_edge():
+    shift = 14.6
+    made = pair(flows.uniform(shift, 0.0), replace(lab.CLEAN, size=(256, 256)), 0)
+    off = measure(made.first, made.second).u - shift
+    rim = 2  # vectors, 8 px apart from 8 px on, within half the displacement and half a window of the edge
+    assert abs(off[rim:-rim, rim:-rim].mean()) < tolerance("piv.sub_pixel_bias")
+    # The check that must fail: at the edge, where tracers leave the picture.
+    assert np.abs(off).max() > 4 * tolerance("piv.sub_pixel_bias")
+
+
 def test_a_field_that_is_not_smoothed_misses_the_row_of_the_uniform_flow():
     assert lab.row("uniform", range(1), Settings(smooth=False)).rms > tolerance("piv.uniform")
 
