@@ -58,6 +58,15 @@ class Outline(Section):
             for c, d in sides[:k]
         )
 
+    def spike(self) -> tuple[float, float] | None:
+        """The first corner (x, y), m, at which the outline goes back along the line that it came; None if none."""
+        corners = np.array(self.outline)
+        out, back = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
+        turned = np.abs(out[:, 0] * back[:, 1] - out[:, 1] * back[:, 0])
+        flat = turned <= ON_A_SIDE * np.hypot(*out.T) * np.hypot(*back.T)
+        tips = np.flatnonzero(flat & ((out * back).sum(axis=1) < 0.0))
+        return self.outline[tips[0]] if tips.size else None
+
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which of ``points`` (n, 2) m lie inside (an odd number of sides to their right), or on a side."""
         x, y = points[:, 0], points[:, 1]
@@ -226,6 +235,9 @@ class SoilSection(Section):
         for key, body in ((f"soil.{kind}[{k}].outline", it) for kind, of in outlines for k, it in enumerate(of)):
             if len(body.outline) < 3:
                 found.append(Fault(key, len(body.outline), "corners hold nothing", "", ">= 3"))
+            elif tip := body.spike():
+                problem = "is the tip of a spike: the outline goes out and back along one line"
+                found.append(Fault(key, tip, problem, "m", repair="take this corner out"))
             elif body.crosses():
                 problem = "crosses itself"
                 found.append(Fault(key, None, problem, repair="give the corners in their order around the body"))

@@ -7,6 +7,7 @@ from continuum_sph.builders.parts.stiffness import largest_modulus
 from continuum_sph.builders.parts.suction import longest_step, require_filled, retention_of, suction_section
 from continuum_sph.builders.reports.seepage_report import report_stiffness
 from continuum_sph.builders.reports.soil_report import soil_report
+from continuum_sph.scene.bounds import WHOLE
 from continuum_sph.scene.sections import Scene
 from continuum_sph.unsaturated.richards import MOST_STAGES, SAFE, lattice_rate, stages_in
 from porescale.common.api.report import Report
@@ -51,6 +52,12 @@ def suction_report(scene: Scene) -> Report:
     crest = section.height
     if any(it.highest > crest for it in scene.reservoir):
         out.warn("a level stands over the soil: open water is at rest, so it then stands on both sides of the soil")
+    table = suction.water_table
+    if table is not None and table > crest * (1.0 + WHOLE) and not any(it.highest >= table for it in scene.reservoir):
+        out.warn(
+            f"soil.suction.water_table = {table:g} m lies over the soil, {crest:g} m high, and no reservoir keeps "
+            "water there: pores lose at once what stands over them"
+        )
     if suction.saturation is not None and suction.saturation < 0.9 and any(it.highest > 0.0 for it in scene.reservoir):
         out.row("suction at the start", float(law.suction((suction.saturation - suction.residual)
                 / (1.0 - suction.residual))), "m")  # fmt: skip

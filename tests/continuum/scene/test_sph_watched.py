@@ -41,6 +41,10 @@ def test_a_watched_part_has_the_mean_displacement_of_what_was_in_its_outline():
         ),
         ([{"outline": [[0.1, 0.1], [0.2, 0.2]]}], r"soil\.watch\[0\]\.outline = 2: corners hold nothing"),
         ([{"outline": [[0.1, 0.1], [0.4, 0.2], [0.4, 0.1], [0.1, 0.2]]}], r"soil\.watch\[0\]\.outline: crosses itself"),
+        (
+            [{"outline": [[0.1, 0.1], [0.4, 0.1], [0.5, 0.1], [0.4, 0.1], [0.4, 0.2]]}],
+            r"soil\.watch\[0\]\.outline = \(0\.5, 0\.1\) m: is the tip of a spike",
+        ),
         ([{"outline": [[0.1, 0.1], [2, 0.2], [1, 1]]}], r"soil\.watch\[0\]\.outline .* lies outside of the tank"),
         ([{"name": "a", "outline": UPPER}] * 2, r"soil\.watch\[1\]\.name = 'a': is that of another part"),
     ],

@@ -138,6 +138,17 @@ def test_check_holds_the_water_against_soil_as_stiff_as_its_weight_makes_it(expo
     assert found["stiffness of the water K_w/(n M)"] == pytest.approx(1000.0 * 300.0**2 / (0.4 * modulus), rel=1e-12)
 
 
+def test_check_warns_of_a_table_over_soil_that_no_water_stands_on():
+    def said(table, **changes):
+        return any(
+            "lies over the soil" in it for it in report(scene(SUCTION | {"water_table": table}, **changes)).warnings
+        )
+
+    assert said(0.25)
+    assert not said(0.2)
+    assert not said(0.3, **UNDER)
+
+
 def test_check_warns_of_water_that_is_soft_and_of_levels_over_the_crest():
     assert any("n M" in it for it in report(scene(water={"sound_speed": 20.0})).warnings)
     assert any("both sides" in it for it in report(scene(**UNDER)).warnings)
