@@ -11,8 +11,8 @@ whole difference where particles approach, and with it flow itself.
 
 Particles that slip past each other across two rows differ by what gradients do not contain, too, so this holds a slip
 back by as much as it is fast: a slab on a weak seam reaches a tenth of its acceleration with 20 rows.  ``bounded``, the
-most that a pair damps is DAMPED_BY of s, the largest shear stress of its particles, whatever the velocities are: of the
-strength, where soil yields.  Across a plane that slips damping bears 2/π of that in the mean of directions,
+most that a pair damps of which a particle yields is DAMPED_BY of s, the largest shear stress of its particles, whatever
+the velocities are: of the strength.  Across a plane that slips damping bears 2/π of that in the mean of directions,
 |sin θ cos θ| over cos² θ: `HELD_BACK` of the strength.
 
 Zig-zags in stress cause no force and persist too.  Stress diffuses, dσ_i/dt = -χ h² γ' Σ V_j (σ_j - σ_i) (1/r) W', but
@@ -85,6 +85,7 @@ DAMPED_BY = 0.04
 HELD_BACK = DAMPED_BY * 2.0 / math.pi
 """Share of the strength that damping bears at most, where all on one side of a plane slips over the other."""
 UNBOUND = 1e30  # Pa, in place of a stress: the bound of what has none
+YIELDING = 1e12  # s: over a rate of plastic shear strain of 1e-12 1/s a particle yields
 
 
 class Choices(NamedTuple):
@@ -173,13 +174,14 @@ def soil_forces(i, record, stress, near, choices):
         part = volume * slope
         damping_term = (sound + sound_j) * approach * mass * slope / (distance2 + soft)
         stress_term = own * part
-        bound = share * (twice + sqrt((xx_j - yy_j) * (xx_j - yy_j) + 4.0 * xy_j * xy_j))
+        rate = shear_rate + shear_rate_j
+        firm = UNBOUND * maximum(1.0 - YIELDING * rate, 0.0)  # where neither yields
+        bound = share * (twice + firm + sqrt((xx_j - yy_j) * (xx_j - yy_j) + 4.0 * xy_j * xy_j))
         bound *= maximum(stress_term, 0.0 - stress_term)
         damping_term = maximum(0.0 - bound, minimum(bound, damping_term))
         bx += damping * damping_term * dx - stress_term * ((txx + txx_j) * dx + (txy + txy_j) * dy)
         by += damping * damping_term * dy - stress_term * ((tyx + tyx_j) * dx + (tyy + tyy_j) * dy)
         around -= part * ((xx_j - xx) + (yy_j - yy))
-        rate = shear_rate + shear_rate_j
         diffusing = by_strain * rate + by_sound
         part = diffusing * part
         grown += diffusing * slope * (volume - bulk)
@@ -229,7 +231,8 @@ def with_wall_forces(i, record, facing, stress, near, choices, sums, around):
     soft, damping = SOFTENING * h * h, 0.5 * choices.damping * h
     inverse_spacing2 = 1.0 / (choices.spacing * choices.spacing)
     linear, most = undamped(choices.printed)
-    sheared = 2.0 * largest_shear(stress[i, XX], stress[i, YY], stress[i, XY]) + (0.0 if choices.bounded else UNBOUND)
+    yielding = choices.bounded and record[i, SHEAR_RATE] > 0.0
+    sheared = 2.0 * largest_shear(stress[i, XX], stress[i, YY], stress[i, XY]) + (0.0 if yielding else UNBOUND)
     own = record[i, VOLUME] / record[i, MASS]
     shearing = parting_rate(i, record, choices)
     for w in range(np.uint64(near.split[i]), np.uint64(near.start[i + 1])):

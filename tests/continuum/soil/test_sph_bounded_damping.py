@@ -6,32 +6,34 @@ import numpy as np
 import pytest
 
 from continuum_sph.builders.parts.soil import soil_law
-from continuum_sph.soil import Material, momentum
+from continuum_sph.soil import Material
 from continuum_sph.soil.momentum import DAMPED_BY, HELD_BACK
-from continuum_sph.soil.state import VOLUME
-from continuum_sph.soil.stress import CROWD
+from continuum_sph.soil.state import SHEAR_RATE, VOLUME
+from continuum_sph.soil.stress import CROWD, XX, XY, YY
 from continuum_sph.validation.soil.setups import RATIO, body
 from continuum_sph.validation.tanks import level_ground, tank_scene
 from continuum_sph.water.smoothing import kernel_slope
 from porescale.common.neighbors import square_lattice
 
-SHEARED = (3000.0, 1000.0, 500.0, 800.0)
-"""A stress (Pa); its largest shear stress is √(1000² + 500²)."""
 
+def braking(speed, bounded=True, yielding=1.0):
+    """(accelerations that damping makes, most that its bound allows), m/s², of strewn soil at random speeds, m/s.
 
-def braking(speed, **law):
-    """(accelerations that damping makes, most that its bound allows), m/s², of strewn soil at random speeds, m/s."""
+    yielding : rate of plastic shear strain, 1/s.
+    """
     spacing = 0.1
     x = square_lattice((-0.5, -0.5), (0.5, 0.5), spacing)
     x += np.random.default_rng(2).uniform(-0.2, 0.2, x.shape) * spacing
     random = np.random.default_rng(1).uniform(-speed, speed, x.shape)
     found = []
-    for damping in (law.pop("damping", 0.2), 0.0):
-        flow = body(x, spacing, Material(1e6, 1600.0), SHEARED, damping=damping, **{"bounded": True} | law)
+    for damping in (0.2, 0.0):
+        material = Material(1e6, 1600.0, yields=False)
+        flow = body(x, spacing, material, (3000.0, 1000.0, 500.0, 800.0), damping=damping, bounded=bounded)
         flow.soil.v[:] = random
         flow.soil.acceleration[:] = 0.0
         flow.begin(0.0)
         flow.strain(0.0)
+        flow.soil.record[:, SHEAR_RATE] = yielding
         flow.push()
         found.append(flow.soil.acceleration.copy())
     soil, h = flow.soil, flow.law.smoothing.length
@@ -39,7 +41,8 @@ def braking(speed, **law):
     np.fill_diagonal(apart, 10.0)
     push = np.vectorize(lambda r: -kernel_slope("wendland", r, h))(apart)
     volume = soil.record[:, VOLUME]
-    most = 2.0 * momentum.DAMPED_BY * math.hypot(1000.0, 500.0) * volume / soil.mass * (push @ volume)
+    largest = np.hypot(0.5 * (soil.stress[:, XX] - soil.stress[:, YY]), soil.stress[:, XY])
+    most = DAMPED_BY * volume / soil.mass * (push * (largest[:, None] + largest) @ volume)
     return np.hypot(*(found[0] - found[1]).T), most
 
 
@@ -60,6 +63,11 @@ def test_beyond_the_bound_it_knows_no_speed_and_below_it_is_linear():
 def test_without_it_damping_knows_no_bound():  # the twin that must fail
     taken, most = braking(1e3, bounded=False)
     assert taken.max() > 10.0 * most.max()
+
+
+def test_where_nothing_yields_damping_knows_no_bound():
+    free = braking(10.0, bounded=False, yielding=0.0)[0]
+    assert (braking(10.0, yielding=0.0)[0] == free).all()
 
 
 def test_damping_bears_of_a_slip_what_the_row_says():
