@@ -23,7 +23,7 @@ def report(scene: Scene) -> Report:
         out.warn(
             f"soil.numerics.settle = {settle:g} s: motion is braked to the end of the run, at {scene.time.end:g} s"
         )
-    if settle == 0.0 and scene.soil.loads_from_none and scene.soil.numerics.stress_diffusion is None:
+    if settle == 0.0 and scene.soil.loads_from_none:
         out.warn(
             'soil.exponent from stress "none": diffusion of stress makes soil stiffer before its weight comes on, and '
             "it settles too little; give soil.numerics.settle a time until it rests, or soil.numerics.stress_diffusion"

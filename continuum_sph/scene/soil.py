@@ -214,8 +214,9 @@ class SoilSection(Section):
 
     @property
     def loads_from_none(self) -> bool:
-        """Whether its weight comes on a soil without stress, whose stiffness grows with it."""
-        return self.stress == "none" and self.exponent > 0.0
+        """Whether its weight comes on a soil without stress, whose stiffness grows with it: there stress diffuses once
+        it has settled, unless the scene has a diffusion of its own."""
+        return self.stress == "none" and self.exponent > 0.0 and self.numerics.stress_diffusion is None
 
     @property
     def permeabilities(self) -> tuple[float, float]:

@@ -49,8 +49,8 @@ class SoilLaw:
     than a spacing part, per shear strain, 0: soil does not swell either;  repulsion : A of `tension`, where soil bears
     tension;  drag : 1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin :
     turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49;  averages : over neighbours, of what
-    shears in a step, where soil softens, see `softening`;  level_from : time (s) from
-    which on stress and volume diffuse.
+    shears in a step, where soil softens, see `softening`;  level_from : time (s) from which on stress and
+    volume diffuse.
     """
 
     smoothing: Smoothing

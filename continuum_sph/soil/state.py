@@ -9,8 +9,9 @@ from porescale.common.core.ranges import Range, require_arrays, require_in_range
 from porescale.common.core.types import Floats
 
 X, Y, VX, VY, VOLUME, MASS, SOUND_OVER_DENSITY, SHEAR_RATE, TXX, TXY, TYX, TYY, GXX, GXY, GYX, GYY = range(16)
-"""Columns of a record, two cache lines: m, m, m/s, m/s, m², kg/m, c/ρ in m⁴/(kg s), shear strain rate in 1/s; σ·K, Pa
-(xy: row x, column y); velocity gradient ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y, 1/s."""
+"""Columns of a record, two cache lines: m, m, m/s, m/s, m², kg/m, c/ρ in m⁴/(kg s), rate of shear strain (of plastic
+strain with `SoilLaw.bounded`) in 1/s; σ·K, Pa (xy: row x, column y); velocity gradient ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x,
+∂v_y/∂y, 1/s."""
 
 
 @dataclass

@@ -24,7 +24,7 @@ from continuum_sph.soil.material import Material
 LEVELLING = 6.4
 """χ over E/(ρ g H)."""
 MOST = 1000.0  # χ at most: a step follows a shear strain of 1/7χ
-WEIGHTLESS = 0.2, 100.0  # α and χ where nothing weighs
+WEIGHTLESS = 0.2, 100.0  # α and χ where nothing weighs; α of damping that is bounded or as eq. 36, too
 
 
 def steadied(material: Material, gravity: float, height: float, length: float) -> tuple[float, float]:

@@ -53,9 +53,9 @@ def deform(
     density, stress, material, table, matrix, spread, separation_strain, plastic_shear, sheared, record, straining
 ):  # fmt: skip
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``separation_strain``, ``plastic_shear``
-    (soil,) and in ``record`` (n, 16) c/ρ, less where damping would take more than a step follows, shear strain rate
-    and σ·K.  Where soil softens ``sheared`` (soil,) is overwritten by the plastic shear strain of the step, and
-    ``plastic_shear`` is left; else it is empty.
+    (soil,) and in ``record`` (n, 16) c/ρ, less where damping would take more than a step follows, rate of shear strain
+    (of plastic strain, if ``straining.plastic``) and σ·K.  Where soil softens ``sheared`` (soil,) is overwritten by the
+    plastic shear strain of the step, and ``plastic_shear`` is left; else it is empty.
 
     material, table, matrix: see `state.Soil`;  spread (soil, 7) Pa/s, m²/s, Pa and 1: diffusion of stress and
     volume, mean p of the surroundings less p, and crowd, of `accelerate`;  straining: see `Straining`.  Returns the

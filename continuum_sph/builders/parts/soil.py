@@ -300,7 +300,6 @@ def soil_law(scene: Scene) -> SoilLaw:
     smoothing = Smoothing(numerics.kernel, numerics.smoothing_ratio * numerics.spacing)
     damping, diffusion = steadied(material, scene.gravity, section.height, smoothing.length)
     averages = averages_of(smoothing, numerics.spacing, section.softening.band_width) if section.softening else 1
-    loads = section.loads_from_none and choice.stress_diffusion is None
     return SoilLaw(
         smoothing,
         numerics.spacing,
@@ -318,7 +317,7 @@ def soil_law(scene: Scene) -> SoilLaw:
         settle=choice.settle,
         courant=numerics.courant,
         averages=averages,
-        level_from=choice.settle if loads else 0.0,
+        level_from=choice.settle if section.loads_from_none else 0.0,
     )
 
 

@@ -68,8 +68,7 @@ def slip_error(rows: float) -> float:
     levels=slides.LEVELS,
     expected=1.0,
     within=0.5,
-    because="damping bears less of a seam the more rows it has, and where it slips is known to half a spacing; what is "
-    "left at 80 rows is the swing of the slab, a hundredth",
+    because="damping bears less of a seam the more rows it has, and where it slips is known to half a spacing",
 )
 def slide_error(rows: float) -> float:
     """Of the acceleration of what lies over the seam."""

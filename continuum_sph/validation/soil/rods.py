@@ -12,6 +12,7 @@ import numpy as np
 
 from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.soil import Material, Rate
+from continuum_sph.soil.steadying import WEIGHTLESS
 from continuum_sph.validation.soil.setups import in_tank, run_until
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
@@ -24,7 +25,7 @@ RODS_DEPTHS = ((0.10, 0.078), (0.20, 0.047), (0.26, 0.031), (0.30, 0.021), (0.36
 (2008) 1537, digitised by Wyser, Alkhimenkov, Jaboyedoff & Podladchikov, Geosci. Model Dev. 14 (2021) 7749."""
 RODS = Material(0.84e6, 2040.0, sin_friction=math.sin(math.radians(19.8)))
 """Their rods, of aluminium, 0.1 m high and 0.2 m wide: K 0.7 MPa; 2650 kg/m³, and with pores 2040."""
-FASTEST = math.sin(math.radians(80.0))
+FASTEST = math.sin(math.radians(80.0))  # sin φ∞: so steep that the line below is met, within what a scene may have
 DISCS = Rate(FASTEST, (FASTEST - RODS.sin_friction) / 1.1 - 0.1, 1.25e-3)
 """Rods of 1 and 1.5 mm, whose friction grows as that of discs: by 1.1 I (da Cruz, Emam, Prochnow, Roux & Chevoir, Phys.
 Rev. E 72 (2005) 021309, up to I = 0.2); this law crosses that line at I = 0.1."""
@@ -38,7 +39,7 @@ def deposit(rows: int, rate: Rate | None = DISCS) -> tuple[Floats, float]:
     material = replace(RODS, rate=rate)
     x = square_lattice((0.0, 0.0), (base, height), spacing)
     stress = geostatic(height - x[:, 1], material)
-    flow = in_tank(x, stress, (0.7, 0.15), spacing, material, damping=0.2, bounded=True)
+    flow = in_tank(x, stress, (0.7, 0.15), spacing, material, damping=WEIGHTLESS[0], bounded=True)
     run_until(flow, 0.7)
     return flow.soil.x[: flow.soil.soil].copy(), spacing
 

@@ -15,7 +15,7 @@ import numpy as np
 from continuum_sph.builders.parts.soil import geostatic, placed
 from continuum_sph.soil import Material, SoilLaw
 from continuum_sph.soil.momentum import HELD_BACK
-from continuum_sph.soil.steadying import steadied
+from continuum_sph.soil.steadying import WEIGHTLESS, steadied
 from continuum_sph.validation.soil.setups import DENSITY, POISSON, SKIN, STIFFNESS
 from continuum_sph.water.smoothing import RATIO, Smoothing
 from porescale.common.core.constants import GRAVITY
@@ -24,7 +24,6 @@ from porescale.common.neighbors import square_lattice
 
 VALIDATIONS = Validations()
 
-ALPHA = 0.2  # of damping that is bounded, as of scenes
 DEGREES, STRONG, WEAK = 30.0, 0.7, 0.4
 """Slope; sin φ of the soil, which rests up to 35°, and of the seam, up to 21.8°."""
 THICK = 0.1  # m
@@ -45,7 +44,7 @@ def acceleration(rows: int, *, bounded: bool = True, **law: Any) -> float:
     stress = geostatic(1.0 - x[:, 1], strong, GRAVITY * math.cos(tilt))
     down = (GRAVITY * math.sin(tilt), -GRAVITY * math.cos(tilt))
     damping, diffusion = steadied(strong, GRAVITY, 1.0, RATIO * spacing)
-    law = {"damping": ALPHA if bounded else damping, "diffusion": diffusion, "bounded": bounded} | law
+    law = {"damping": WEIGHTLESS[0] if bounded else damping, "diffusion": diffusion, "bounded": bounded} | law
     given = SoilLaw(Smoothing("wendland", RATIO * spacing), spacing, (strong, weak), down, **law)
     flow = placed(x, stress, (width, 2.0), given, sides="none", skin=SKIN, hasty=True)
     depth = x[:, 1] - 0.5
