@@ -147,7 +147,7 @@ class SaturatedCells:
             high, wide = np.append(high, cells), np.append(wide, cells)
         if shapes:
             sizes = [shape.size(fluid, shift) for shape in shapes]
-            self.bodies = Bodies(fluid, len(high), shapes, rectangles)
+            self.bodies = Bodies(fluid, len(high), shapes, rectangles, turns_back=self.operator.turns_back)
             wide = np.append(wide, [size[0] for size in sizes])
             high = np.append(high, [size[1] for size in sizes])
         return high, wide

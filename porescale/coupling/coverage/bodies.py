@@ -21,12 +21,15 @@ class Bodies:
     """Shapes beside ``discs`` discs, after which they come in all arrays of bodies.
 
     centre, velocity (n, 2), spin (n,): of all bodies, as kernels read them.
-    load (m, 3): force and torque of the fluid on the shapes in the last step;  mass: what has come in through sides
-    with them and was not taken out again.  Lattice units.  A step allocates a few bytes, and more where a ring moves.
+    load (m, 3): force and torque of the fluid on the shapes in the last step, of which cells give the mean of two steps
+    where full ones turn populations back (immersed.py);  mass: what has come in through sides with them and was not
+    taken out again.  Lattice units.  A step allocates a few bytes, and more where a ring moves.
     """
 
-    def __init__(self, fluid: Fluid, discs: int, shapes: Sequence[Shape], rectangles: int) -> None:
-        """rectangles: how many of the shapes, the first ones, are such."""
+    def __init__(
+        self, fluid: Fluid, discs: int, shapes: Sequence[Shape], rectangles: int, *, turns_back: bool = False
+    ) -> None:
+        """rectangles: how many of the shapes, the first ones, are such;  turns_back: whether full cells do so."""
         self.shapes, self.discs, self.rectangles = list(shapes), discs, rectangles
         self._fluid = fluid
         count, m = discs + len(shapes), len(shapes)
@@ -37,7 +40,8 @@ class Bodies:
         self._grid = fluid.nx, fluid.ny, *fluid.sides.periodic
         self._filled: list[Reals | None] = [None] * m
         self._inside, self._borne = np.zeros((m, 2)), np.zeros((m, 3))
-        self._before = np.zeros((m, 3))
+        self._before, self._under_way = np.zeros((m, 3)), np.zeros((m, 3))
+        self._turns_back, self._now = turns_back, 0.5 if turns_back else 1.0
         for k, shape in enumerate(self.shapes):
             self._before[k] = *shape.velocity, shape.spin
 
@@ -85,7 +89,7 @@ class Bodies:
 
     def after(self, fluid: Fluid, patches: Patches, load: Reals, force: Reals, direct: Reals) -> None:
         """The shapes' loads: ``load`` (n, 3) of all bodies' cells, less what sides bear, and the rate at which the
-        velocity of the fluid inside changes, given back.
+        velocity of the fluid inside changes, given back.  Of two steps, where full cells turn populations back.
 
         force (n, 2): the body force at each body.  Overwrites the shapes' rows of direct (n, 2), what it adds at once.
         """
@@ -94,7 +98,7 @@ class Bodies:
             fluid.flat, self._borne,
         )  # fmt: skip
         shape_loads(load[self.discs :], self._borne, self._inside, self.velocity[self.discs :],
-                    self.spin[self.discs :], self._before, self.load)  # fmt: skip
+                    self.spin[self.discs :], self._before, self._now, self._under_way, self.load)  # fmt: skip
         direct[self.discs :] = -self._inside[:, :1] * force[self.discs :]
 
     def restore_mass(self, fluid: Fluid, patches: Patches) -> float:
@@ -114,11 +118,14 @@ class Bodies:
 
     def state(self) -> dict[str, Any]:
         """What the next step takes from those before; places are the owner's."""
-        return {"before": self._before, "mass": self.mass}
+        state = {"before": self._before, "mass": self.mass}
+        return state | ({"load_under_way": self._under_way} if self._turns_back else {})
 
     def restore(self, state: dict[str, Any]) -> None:
         """Restore a state of the same shapes."""
         self._before[...], self.mass = state["before"], float(state["mass"])
+        if self._turns_back:
+            self._under_way[...] = state["load_under_way"]
 
 
 @kernel
@@ -153,13 +160,16 @@ def inside_of(fraction, corner, centre, out):
 
 
 @kernel
-def shape_loads(cells, borne, inside, velocity, spin, before, load):
-    """load (m, 3) <- cells - borne + inside dv/dt, and the same with the spin; before (m, 3) <- velocity and spin.
+def shape_loads(cells, borne, inside, velocity, spin, before, now, under_way, load):
+    """load (m, 3) <- own + inside dv/dt, and the same with the spin; before (m, 3) <- velocity and spin.
 
-    cells, borne (m, 3);  inside (m, 2): area and polar moment;  velocity (m, 2), spin (m,).
+    own: a share ``now`` of cells - borne, and what is under way of the step before; overwrites under_way (m, 3) with
+    the rest.  cells, borne (m, 3);  inside (m, 2): area and polar moment;  velocity (m, 2), spin (m,).
     """
     for k in range(load.shape[0]):
         for a in range(3):
-            now = velocity[k, a] if a < 2 else spin[k]
-            load[k, a] = cells[k, a] - borne[k, a] + inside[k, 0 if a < 2 else 1] * (now - before[k, a])
-            before[k, a] = now
+            own = cells[k, a] - borne[k, a]
+            moves = velocity[k, a] if a < 2 else spin[k]
+            load[k, a] = now * own + under_way[k, a] + inside[k, 0 if a < 2 else 1] * (moves - before[k, a])
+            under_way[k, a] = (1.0 - now) * own
+            before[k, a] = moves
