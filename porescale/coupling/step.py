@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.types import Floats, Reals
+from porescale.common.core.types import AnyArray, Floats, Reals
 from porescale.coupling.coverage.overlap import overlapping
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.coverage.ring import Ring
@@ -230,6 +230,24 @@ class Coupled:
         share = self.scales.velocity / np.maximum(self.saturated.solid, 1)  # grains that overlap fill a cell once
         return self.saturated.covered[1] * share, self.saturated.covered[2] * share
 
+    def start_inside(self, velocity: tuple[float, float]) -> None:
+        """Start from fluid that goes at ``velocity``, m/s, and within bodies with them, as ``inner_velocity`` has it.
+
+        Where it stood still instead, a body let go would lose to it, in the first steps, the share of its momentum and
+        spin that this fluid takes: all of them at the density of the fluid.
+        """
+        inside = self.solid_flow()
+        free = 1 - np.minimum(self.saturated.solid, 1)
+        speed = self.scales.velocity
+        self.fluid.set_flow(*((free * u + v) / speed for u, v in zip(velocity, inside, strict=True)))
+
+    def set_free_apart(self, velocity: tuple[float, float]) -> bool:
+        """Whether some body that is free starts with a spin, or not with the ``velocity`` of the fluid, m/s."""
+        discs, seen = self.grains.discs, self._seen
+        apart = starts_apart(discs.velocity[seen], discs.spin[seen], self.grains.held, velocity)
+        p = self.polygons
+        return apart or (p is not None and starts_apart(p.velocity, p.spin, p.held, velocity))
+
     def _seen_motion(self) -> tuple[Reals, Reals, Reals]:
         """Centre (n, 2), velocity (n, 2) and spin (n,) of the discs in the lattice, lattice units."""
         self._to_lattice()
@@ -273,6 +291,13 @@ class Coupled:
             self._take_push()
             if self.polygons:
                 self.polygons.distribute(self.immersed)
+
+
+def starts_apart(velocity: Reals, spin: Reals, held: AnyArray, flow: tuple[float, float]) -> bool:
+    """Whether a component that is not held of bodies' velocity (n, 2), m/s, and spin (n,), rad/s, differs from that of
+    a uniform ``flow``;  held: (n or more, 3) flags, or none."""
+    differs = np.column_stack((np.not_equal(velocity, flow), np.not_equal(spin, 0.0)))
+    return bool((differs & (held[: len(spin)] == 0) if len(held) else differs).any())
 
 
 def cells_of(fluid: Fluid) -> type[SaturatedCells]:

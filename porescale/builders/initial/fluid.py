@@ -82,6 +82,8 @@ def coupled_of(
         lubrication=films is not None, film_gap=films.gap if films else CELLS, rectangles=rectangles,
         rings=rings,
     )  # fmt: skip
+    if coupled.set_free_apart(scene.fluid.velocity):
+        coupled.start_inside(scene.fluid.velocity)
     rims = coupled.saturated.soft_rim
     if rims and scene.disc:
         rims.stands[-len(scene.disc) :] = [disc.fastest == 0.0 for disc in scene.disc]
