@@ -2,6 +2,7 @@
 a box without outlet or a gap that a rectangle opens, flow by a gravity that pressure balances, and begin to flow with
 too long a relaxation time."""
 
+import cmath
 import math
 from typing import NamedTuple
 
@@ -10,11 +11,13 @@ from porescale.builders.checks.limits import DENSITY_REFUSE
 from porescale.builders.checks.own_laws import impulse, largest_force
 from porescale.builders.initial.contact_laws import MaterialPlan, density_of_packing
 from porescale.builders.initial.placed import by_hand
+from porescale.builders.initial.random_polygons import copies_of
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.constants import EDGE
 from porescale.common.core.errors import Fault
 from porescale.lbm.scales import Scales
 from porescale.scene.bodies.rectangle import Rectangle
+from porescale.scene.bodies.segments import Points
 from porescale.scene.domain import Domain
 from porescale.scene.grains import Grains
 from porescale.scene.scene import Scene
@@ -101,9 +104,11 @@ def _has_friction(d: Domain, name: str) -> bool:
 
 
 def _standing(scene: Scene) -> list[Solid]:
-    """Held discs and rectangles that stand, as far as these are in the box."""
+    """Held discs that stay where they are, turning or not, held polygons, and rectangles that stand, as far as these
+    are in the box."""
     size = scene.domain.width, scene.domain.height
-    found = [_disc(it.x, it.y, 0.5 * it.diameter) for it in scene.disc if it.fastest == 0.0]
+    found = [_disc(it.x, it.y, 0.5 * it.diameter) for it in scene.disc if it.stays]
+    found += [_outlined(it.points, *copy) for it in scene.polygon if it.held for copy in copies_of(it)]
     for it in scene.rectangle:
         lower = max(it.lower[0], 0.0), max(it.lower[1], 0.0)
         upper = min(it.upper[0], size[0]), min(it.upper[1], size[1])
@@ -117,6 +122,16 @@ def _disc(x: float, y: float, radius: float, ratio: float = 1.0) -> Solid:
     """A disc whose radius (m) in the fluid is ``ratio`` of its own."""
     r = ratio * radius
     return Solid((x - r, y - r), (x + r, y + r), math.pi * r**2, r)
+
+
+def _outlined(points: Points, at: tuple[float, float], angle: float, size: float) -> Solid:
+    """A copy of a polygon: its points (m) turned about the origin and put to ``at`` (m), ``size`` times as large."""
+    turn = size * cmath.exp(1j * angle)
+    corners = [complex(*at) + turn * complex(*point) for point in points]
+    x, y = [it.real for it in corners], [it.imag for it in corners]
+    twice = sum((a.conjugate() * b).imag for a, b in zip(corners, [*corners[1:], corners[0]], strict=True))
+    longest = max(max(x) - min(x), max(y) - min(y))
+    return Solid((min(x), min(y)), (max(x), max(y)), 0.5 * abs(twice), 0.5 * longest)
 
 
 def _past_solids(scene: Scene, solids: list[Solid], axis: int) -> float:
@@ -323,8 +338,7 @@ def _check_unheld(scene: Scene, scales: Scales, warnings: list[str]) -> None:
     side with friction, no solid that stands and no body force.  Both together then gain speed until the end."""
     assert scene.fluid
     force, d = scene.fluid.body_force, scene.domain
-    stands = bool(_standing(scene)) or any(it.held for it in scene.polygon)
-    if scene.grains is None or isinstance(force, OwnLaw) or stands:
+    if scene.grains is None or isinstance(force, OwnLaw) or _standing(scene):
         return
     solids = _free_discs(scene, scene.grains, 1.0)
     share, heavy = sum(it.area for it in solids) / (d.width * d.height), _mean_density(scene, solids)

@@ -62,6 +62,12 @@ class Disc(Timed):
         )  # fmt: skip
         return math.hypot(x, y) + spin * self.diameter / 2
 
+    @property
+    def stays(self) -> bool:
+        """Whether its centre stays where it is; it may turn."""
+        given = zip((self.velocity_x, self.velocity_y), self.velocity, strict=True)
+        return all((it.largest if it else constant) == 0.0 for it, constant in given)
+
     def motion(self, time: float) -> tuple[float, float, float]:
         """Velocity (m/s) and spin (rad/s) at ``time`` (s)."""
         x, y, spin = self.velocity_x, self.velocity_y, self.turning
