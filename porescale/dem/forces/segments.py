@@ -18,6 +18,10 @@ Rules for what counts, see RULES:
 "printed": equations 5 to 9 of the DEMseg tutorial, with the radius that (7) lacks: near an end the overlap falls to
     zero, past it it jumps, and energy cannot close.  For comparison.
 
+A straight side is flat: what lies on it rolls at its own radius r, as on a wall, but at no more than half of the side's
+length L, which is as far as what presses on the side can move off its middle.  At the ends it is the reduced radius of
+two round bodies.  Elastic forces of the law of Hertz have that everywhere, as they must go on at corners.
+
 A negative weight takes elastic force off, nothing else: no dashpot, no friction.  Where a contact passes from segment
 to corner or back its springs are transferred.
 
@@ -42,7 +46,7 @@ from porescale.dem.contact.law import (
     stored,
     stored_normal,
 )
-from porescale.dem.forces.pairs import contact_force, contact_kinematics, relative_velocity, release_contact
+from porescale.dem.forces.pairs import Approach, contact_force, contact_kinematics, relative_velocity, release_contact
 from porescale.dem.motion.periodic_cell import image
 
 Index = NDArray[np.int64]
@@ -123,6 +127,16 @@ def segment_contact(rule, i, a, b, radius, position, cell):
     if rule == OUTLINE and not between:
         overlap = min(overlap, 0.0)
     return overlap, share, dx, dy
+
+
+@inline
+def on_side(way, share, radius, along, up, turn):
+    """``way`` as it is where the touched point, at ``share`` of a side that goes (along, up) m, lies between its ends:
+    what has ``radius`` (m) rolls on a plane, see module;  turn (rad/s): of both against each other."""
+    if share <= 0.0 or share >= 1.0:
+        return way
+    at = min(radius, 0.5 * np.sqrt(along * along + up * up))
+    return Approach(way.nx, way.ny, way.arm_i, way.arm_j, way.closing, way.slip, way.reduced, at * turn, at)
 
 
 @inline
@@ -238,14 +252,16 @@ def add_segment_forces(d, segments, law, dt, cell):
         du = velocity[i, 0] - (1.0 - share) * velocity[a, 0] - share * velocity[b, 0]
         dv = velocity[i, 1] - (1.0 - share) * velocity[a, 1] - share * velocity[b, 1]
         p = law.table[material_of(d.material, i), material_of(d.material, a)]
+        ex, ey = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
         way = contact_kinematics(dx, dy, du, dv, spin[i], spin[a], radius[i], radius[a])
+        way = on_side(way, share, radius[i], ex, ey, spin[i] - spin[a])
         if overlap <= 0.0:
             release_contact(i, k, overlap, way, p, memory, budget, law, dt)
             store_history(memory, k, 0.0, 0.0, law)
             continue
         mass = d.body_mass[i] * d.body_mass[a] / (d.body_mass[i] + d.body_mass[a])
         gx, gy, moment_i, moment_a = contact_force(i, k, overlap, way, mass, p, memory, budget, law, dt)
-        sx, sy = share * (position[b, 0] - position[a, 0]), share * (position[b, 1] - position[a, 1])
+        sx, sy = share * ex, share * ey
         force[i, 0] += gx
         force[i, 1] += gy
         torque[i] += moment_i
