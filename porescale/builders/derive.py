@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from porescale.builders.checks.contact import material_doubts
+from porescale.builders.checks.contact import material_doubts, wall_friction_doubts
 from porescale.builders.checks.discs_alone import left_out, uncertain_films
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
@@ -90,7 +90,7 @@ def derive(scene: Scene) -> Derived:
         smallest = math.pi / 4 * sizes[0] ** 2 * least, sizes[0] / 2
         mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
         law, wall_law, every = plan.law_and_others(packing.material if packing else "", mean_mass)
-        warnings += material_doubts(scene)
+        warnings += [*material_doubts(scene), *wall_friction_doubts(scene)]
         check_own_contact(scene.contact, every, *smallest)
         warnings += filter(None, [energy_of_mass(scene, every, *smallest)])
         if scene.clump:

@@ -27,6 +27,7 @@ from porescale.common.duration.expected import STEPS, expected
 from porescale.common.schema.own import own_laws
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
+from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.own import OwnContact
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.bodies.disc import Disc
@@ -152,6 +153,13 @@ def _frames(scene: Scene, derived: Derived, out: Report) -> None:
     thin = [it.thickness for it in (*scene.segment, *scene.polygon)] + [it.thickness for it in scene.container]
     if thin:
         out.row("thickness", f"{min(thin):.4g} … {max(thin):.4g}", "m", "half of what a segment measures across")
+        law = derived.law
+        if isinstance(law, Hertz) and derived.grain_count > len(scene.disc) and derived.diameters is not None:
+            radius = 0.5 * derived.diameters[1]
+            share = math.sqrt(min(thin) / (radius + min(thin)))
+            out.row(
+                "stiffness at a side over that at a wall", share, "", "of a mean grain: sides are round, see shapes"
+            )
     if scene.rock:
         out.row("rock", scene.rock.kind, "", "bonded when the run begins")
 

@@ -1,5 +1,6 @@
 """Clumps, controlled bodies, moving walls and the strain of the cell of a system: set up and read."""
 
+import math
 from collections.abc import Sequence
 from typing import cast
 
@@ -30,8 +31,11 @@ def hold(grains: State, disc: int | slice | Floats, x: bool = True, y: bool = Tr
     """Hold these components of the velocity of discs (index, slice or mask) from now on, and release the others.
 
     A held component keeps its value until the owner writes another between steps, whatever the forces; they are in
-    ``withheld``.  Contacts with other discs go on.
+    ``withheld``.  Contacts with other discs go on.  Raises InputError for a disc that is not there, or of a clump.
     """
+    count = grains.discs.count
+    if isinstance(disc, int) and not -count <= disc < count:
+        raise InputError(Fault("disc", disc, "no such disc", allowed=f"0 to {count - 1}"))
     if grains.drivers is not None and np.any(grains.drivers.clumps.group[disc] >= 0):
         raise InputError(Fault("disc", str(disc), "belongs to a clump", repair="control the clump"))
     if not len(grains.held):
@@ -141,6 +145,8 @@ class Steering(Drivers):
             raise InputError(Fault(f"{name}.servo", problem="needs either force or stress"))
         if stress is not None and (length is None) == (between is None):
             raise InputError(Fault(f"{name}.servo", problem="needs either length or between for a stress"))
+        if length is not None and not 0.0 < length < math.inf:
+            raise InputError(Fault(f"{name}.servo.length", length, "makes no sense", "m", "> 0"))
         if not 0.0 < share < 2.0 or not speed > 0.0:
             bad, what, allowed = (share, "share", "> 0, < 2") if speed > 0.0 else (speed, "speed", "> 0")
             raise InputError(Fault(f"{name}.servo.{what}", bad, allowed=allowed))

@@ -92,7 +92,7 @@ class Contact(Touch):
         "", 0.0, **FRICTION, help="largest rolling torque over reduced radius and normal force"
     )
     wall_friction: float | None = quantity(
-        "", None, **FRICTION, help="friction coefficient at walls (default: that between grains)"
+        "", None, **FRICTION, help="friction coefficient at sides, walls and rectangles (default: that between grains)"
     )
     wall_material: str = pydantic.Field("", description="material of walls and held discs (default: the first)")
     release: Literal["force", "overlap"] = pydantic.Field(

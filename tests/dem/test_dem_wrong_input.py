@@ -7,7 +7,7 @@ import pytest
 
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors.placement import place, square_lattice, triangular_lattice
-from porescale.dem import Box, Grains, Hertz, Linear, make_discs
+from porescale.dem import Box, Grains, Hertz, Linear, make_discs, polygon
 from porescale.dem.contact.materials import Materials
 
 LAW = Linear(1e5, friction=0.5)
@@ -102,3 +102,21 @@ def test_what_physics_allows_passes():
     assert two().stable_step(safety=2.0) > 0.0
     two().step(np.float64(1e-5), count=np.int64(2))
     two().step(1e-5, [0.0, -9.8])
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda grains: grains.hold(2), "disc = 2: no such disc .allowed: 0 to 1"),
+        (lambda grains: grains.hold(-3), "disc = -3: no such disc"),
+        (lambda grains: grains.steering.servo_wall("top", stress=1.0, speed=1.0, length=-1.0), "top.servo.length = -1"),
+        (lambda grains: grains.steering.servo_wall("top", stress=1.0, speed=1.0, length=math.nan), "top.servo.length"),
+        (lambda _: polygon([(0.0, 0.0), (1.0, 0.0)], 0.1, 10.0), "a polygon has three corners at least"),
+    ],
+)
+def test_what_holds_and_moves_bodies_is_refused_by_name(call, said):
+    with pytest.raises(InputError, match=said):
+        call(two())
+    two().hold(1)
+    two().steering.servo_wall("top", stress=1.0, speed=1.0, length=1.0)
+    assert polygon([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], 0.1, 10.0).closed

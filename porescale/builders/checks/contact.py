@@ -79,6 +79,24 @@ def material_doubts(scene: Scene) -> list[str]:
     return []
 
 
+def wall_friction_doubts(scene: Scene) -> list[str]:
+    """Warnings of bodies that stand or hold grains, which friction at walls passes over."""
+    contact = scene.contact
+    if not contact or contact.wall_friction is None or contact.wall_friction == contact.friction:
+        return []
+    kinds = ("disc", scene.disc), ("container", scene.container)
+    named = [f"{kind}[{k}]" for kind, found in kinds for k in range(len(found))]
+    frames = ("segment", scene.segment), ("polygon", scene.polygon)
+    named += [f"{kind}[{k}]" for kind, found in frames for k, it in enumerate(found) if it.held]
+    if not named:
+        return []
+    shown = ", ".join(named[:3]) + (f" and {len(named) - 3} more" if len(named) > 3 else "")
+    return [
+        f"contact.wall_friction = {contact.wall_friction:g} holds at sides, [[wall]] and [[rectangle]]; at {shown}"
+        f" friction is contact.friction = {contact.friction:g}: a [[material]] of their own has another"
+    ]
+
+
 def _check_names(scene: Scene, contact: Contact) -> list[Fault]:
     """Materials that are named must be there."""
     known = [it.name for it in scene.material]

@@ -252,8 +252,8 @@ def region_row(
     contacts () : number whose point is inside
     fabric anisotropy () : a of the density of directions of contacts (1 + a cos 2(theta - direction))/(2 pi)
     fabric direction (rad) : to which most contacts point, from the x axis
-    mean normal force (N/m) : of the contacts inside
-    largest over mean normal force () : of the contacts inside
+    mean normal force (N/m) : of the contacts inside; what bonds take off is not in it
+    largest over mean normal force () : likewise
     share of sliding contacts () : share of the contacts inside whose friction is at its limit
     velocity x (m/s) : mean of the grains, by mass
     velocity y (m/s) : the same, up

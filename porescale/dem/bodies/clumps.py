@@ -295,22 +295,28 @@ def gather(c, disc_force, disc_torque):
         force[b, 0], force[b, 1], torque[b] = fx, fy, moment
 
 
-def fastest(clumps: Clumps, radius: Floats, normal: float, tangential: float, rolling: float, neighbours: int) -> float:
+def fastest(
+    clumps: Clumps, radius: Floats, normal: float, tangential: float, rolling: float, neighbours: int,
+    rolling_friction: float = 0.0,
+) -> float:  # fmt: skip
     """Largest bound on w^2 (rad/s)^2 of all clumps for contact stiffnesses (N/m), or, with dashpots in their place
     (N s/m), on the damping rate 1/s;  radius (n,) m of all discs.
 
     As in integrate.packing_factor each contact counts twice at each end, and a disc of radius r has at most
     N = max(neighbours, pi (1 + r/r_min)) of them (``corner_contacts`` at a corner), spread so that the sum of n n^T is
     at most N/2.  With o the way from the centroid to a member, the translation block is at most N (k_n + k_t)/M summed
-    over members, the rotation block N (k_n |o|^2 + 2 k_t (|o|/sqrt 2 + r)^2 + 2 k_r r^2)/I, and the largest
-    eigenvalue of both together at most their sum.
+    over members, the rotation block N (k_n |o|^2 + 2 k_t (|o|/sqrt 2 + r)^2 + 2 k_r R^2)/I, R = r, or at a
+    corner that of the largest disc, which may roll on its sides, but at most |o| over the friction of rolling, as half
+    a side is no longer than the larger |o| of its ends; and the largest eigenvalue of both together at most their sum.
     """
     own, sizes = radius[clumps.member], radius[radius > 0.0]
     smallest = float(sizes.min()) if len(sizes) else 1.0
     touch, around = clumps.corner_contacts, np.maximum(float(neighbours), np.pi * (1.0 + own / smallest))
     touch = np.where(touch > 0.0, touch, around)
     far = np.hypot(*clumps.offset.T)
-    turning = normal * far**2 + 2.0 * tangential * (np.sqrt(0.5) * far + own) ** 2 + 2.0 * rolling * own**2
+    at_sides = np.minimum(radius.max(), far / rolling_friction) if rolling_friction > 0.0 else own
+    rolls_at = np.where(clumps.corner_contacts > 0.0, np.maximum(own, at_sides), own)
+    turning = normal * far**2 + 2.0 * tangential * (np.sqrt(0.5) * far + own) ** 2 + 2.0 * rolling * rolls_at**2
     body = clumps.group[clumps.member]
     both = np.bincount(body, touch * (normal + tangential), clumps.count) / clumps.mass
     both += np.bincount(body, touch * turning, clumps.count) / clumps.inertia

@@ -129,8 +129,10 @@ class Frame:
 
 
 def polygon(corners: ArrayLike, thickness: float, density: float, **more: Any) -> Frame:
-    """The polygon with these corners (k, 2) m, either way round; ``more``: see Frame."""
+    """The polygon with these corners (k, 2) m, either way round; ``more``: see Frame.  InputError below three."""
     at = _corners(corners)
+    if len(at) < 3:
+        raise InputError(Fault("frame.corners", at, "a polygon has three corners at least", "m"))
     return Frame(at, tuple((k, (k + 1) % len(at)) for k in range(len(at))), thickness, density, **more)
 
 

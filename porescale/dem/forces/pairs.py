@@ -27,7 +27,7 @@ from porescale.dem.motion.periodic_cell import affine_velocity
 
 class Approach(NamedTuple):
     """Relative motion of two round bodies: unit vector from the first to the second, lever arms m, closing and slip
-    speed m/s, reduced radius m, rolling speed m/s."""
+    speed m/s, reduced radius m, rolling speed m/s, and the radius at which they roll, m."""
 
     nx: float
     ny: float
@@ -37,6 +37,7 @@ class Approach(NamedTuple):
     slip: float
     reduced: float
     rolling: float
+    rolls_at: float
 
 
 @inline
@@ -60,7 +61,7 @@ def contact_kinematics(dx, dy, du, dv, spin_i, spin_j, ri, rj):
     closing = du * nx + dv * ny
     slip = dv * nx - du * ny + spin_i * arm_i + spin_j * arm_j
     reduced = ri * rj / (ri + rj)
-    return Approach(nx, ny, arm_i, arm_j, closing, slip, reduced, reduced * (spin_i - spin_j))
+    return Approach(nx, ny, arm_i, arm_j, closing, slip, reduced, reduced * (spin_i - spin_j), reduced)
 
 
 @inline
@@ -81,7 +82,7 @@ def answer_contact(i, overlap, way, mass, p, springs, budget, law, dt):
     spring, roll = springs
     found = contact(seen, spring, roll, mass, dt, p, law)
     add_contact_losses(i, seen, spring, roll, found, mass, dt, p, budget, law)
-    moment_i, moment_j = moments(found, way.arm_i, way.arm_j, way.reduced, law)
+    moment_i, moment_j = moments(found, way.arm_i, way.arm_j, way.rolls_at, law)
     fx, fy = force_components(found, way.nx, way.ny, law)
     return (fx, fy, moment_i, moment_j), (found.spring, found.roll)
 

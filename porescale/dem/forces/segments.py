@@ -18,6 +18,10 @@ Rules for what counts, see RULES:
 "printed": equations 5 to 9 of the DEMseg tutorial, with the radius that (7) lacks: near an end the overlap falls to
     zero, past it it jumps, and energy cannot close.  For comparison.
 
+A straight side is flat: what lies on it rolls at its own radius r, as on a wall, but the torque mu_r r N is at most
+that of N at an end of the side, half its length L off its middle: r <= L/(2 mu_r).  At the ends the radius is the
+reduced one of two round bodies.  Elastic forces of the law of Hertz have that everywhere, as they must go on there.
+
 A negative weight takes elastic force off, nothing else: no dashpot, no friction.  Where a contact passes from segment
 to corner or back its springs are transferred.
 
@@ -34,6 +38,7 @@ from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.types import Floats
 from porescale.dem.contact.budget import has_budget
 from porescale.dem.contact.law import (
+    MUR,
     has_history,
     load_history,
     material_of,
@@ -42,7 +47,7 @@ from porescale.dem.contact.law import (
     stored,
     stored_normal,
 )
-from porescale.dem.forces.pairs import contact_force, contact_kinematics, relative_velocity, release_contact
+from porescale.dem.forces.pairs import Approach, contact_force, contact_kinematics, relative_velocity, release_contact
 from porescale.dem.motion.periodic_cell import image
 
 Index = NDArray[np.int64]
@@ -123,6 +128,19 @@ def segment_contact(rule, i, a, b, radius, position, cell):
     if rule == OUTLINE and not between:
         overlap = min(overlap, 0.0)
     return overlap, share, dx, dy
+
+
+@inline
+def on_side(way, share, radius, along, up, turn, friction):
+    """``way`` as it is where the touched point, at ``share`` of a side that goes (along, up) m, lies between its ends:
+    what has ``radius`` (m) rolls on a plane, see module;  turn (rad/s): of both against each other;  friction: of
+    rolling."""
+    if share <= 0.0 or share >= 1.0:
+        return way
+    at, half = radius, 0.5 * np.sqrt(along * along + up * up)
+    if friction * at > half:
+        at = half / friction
+    return Approach(way.nx, way.ny, way.arm_i, way.arm_j, way.closing, way.slip, way.reduced, at * turn, at)
 
 
 @inline
@@ -238,14 +256,16 @@ def add_segment_forces(d, segments, law, dt, cell):
         du = velocity[i, 0] - (1.0 - share) * velocity[a, 0] - share * velocity[b, 0]
         dv = velocity[i, 1] - (1.0 - share) * velocity[a, 1] - share * velocity[b, 1]
         p = law.table[material_of(d.material, i), material_of(d.material, a)]
+        ex, ey = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
         way = contact_kinematics(dx, dy, du, dv, spin[i], spin[a], radius[i], radius[a])
+        way = on_side(way, share, radius[i], ex, ey, spin[i] - spin[a], p[MUR])
         if overlap <= 0.0:
             release_contact(i, k, overlap, way, p, memory, budget, law, dt)
             store_history(memory, k, 0.0, 0.0, law)
             continue
         mass = d.body_mass[i] * d.body_mass[a] / (d.body_mass[i] + d.body_mass[a])
         gx, gy, moment_i, moment_a = contact_force(i, k, overlap, way, mass, p, memory, budget, law, dt)
-        sx, sy = share * (position[b, 0] - position[a, 0]), share * (position[b, 1] - position[a, 1])
+        sx, sy = share * ex, share * ey
         force[i, 0] += gx
         force[i, 1] += gy
         torque[i] += moment_i

@@ -349,6 +349,43 @@ def test_rolling_resistance_that_comes_later_finds_room_for_its_springs():
     assert (known, segments_now(grains).near_memory.shape[1]) == (1, 2)
 
 
+@pytest.mark.slow  # compiles the loop for a law of its own
+@pytest.mark.parametrize(
+    ("length", "beside", "at"),
+    [
+        (2.0, 0.0, 0.2),  # amid a side: as on a wall, at its own radius
+        (2.0, 1.1, 0.2 * 0.05 / 0.25),  # past the end of the side: two round bodies
+        (0.3, 0.0, 0.2),  # however long the side is,
+        (0.02, 0.0, 0.1),  # but with no more torque than N at its end: half of it over mu_r
+    ],
+)
+def test_a_disc_rolls_on_a_side_as_on_a_wall(length, beside, at):
+    # Without springs along the contact nothing but the resistance to rolling turns the disc, and its dashpot is at the
+    # limit, so that the torque is mu_r N times the radius at which it rolls.
+    law = Linear(K, friction=0.5, rolling_friction=0.1, rolling_damping=1e9)
+    side = chain([(-0.5 * length, 0.0), (0.5 * length, 0.0)], 0.05, 1000.0)
+    grains = framed(make_discs([(beside, 0.22)], 0.2, 1000.0, spin=5.0), [side], law, BOX)
+    grains.steering.control(Clump(0), REST, REST, REST)
+    grains.step(1e-12)
+    normal = float(np.hypot(*grains.discs.force[0]))
+    assert normal > 0.0
+    # Round-off of the overlap, which is a tenth of distances at 2e-16.
+    assert -grains.discs.torque[0] / (0.1 * normal) == pytest.approx(at, rel=1e-12)
+
+
+def test_the_step_knows_what_resists_rolling_on_sides():
+    # A light rod under a heavy disc: its rotation is held by k_r r^2, r of the disc, which the step must resolve.
+    rod = chain([(-0.1, 0.0), (0.1, 0.0)], 1e-3, 10.0)
+    soft = Linear(K, friction=0.5, tangential_stiffness=0.25 * K, rolling_friction=0.1, rolling_stiffness=1e-3 * K)
+    steps = []
+    for law in (soft, replace(soft, rolling_stiffness=100.0 * K)):
+        steps.append(framed(make_discs([(0.0, 1.0)], 0.9, 1e4), [rod], law, BOX).stable_step(steps_per_contact=0.0))
+    # Where rolling springs are all, the step goes with one over their root: w^2 >= 2 k_r r^2/I of one contact.
+    inertia = 10.0 * 0.2 * 2e-3 * (0.2**2 + 2e-3**2) / 12.0
+    assert steps[0] > steps[1]
+    assert steps[1] < 2.0 / np.sqrt(2.0 * 100.0 * K * 0.9**2 / inertia)
+
+
 def test_what_is_held_does_not_shorten_the_step():
     frames = [regular(4, (0.0, 0.0)), chain([(0.5, -1.0), (0.5, 1.0)], 1e-5, 1.0, long=True)]
     grains = framed(None, frames, LAW, BOX)
