@@ -29,9 +29,8 @@ def lightest(clumps: Clumps, discs: Discs, laws: Sequence[ContactLaw]) -> float:
     for law in laws:
         for kind, own in enumerate(law.stiffest(float(clumps.mass.max()), largest)):
             if max(own) > 0.0:
-                most, mass = (
-                    fastest(clumps, discs.radius, *own, NEIGHBOURS, law.rolling_friction), float(discs.mass.min())
-                )  # fmt: skip
+                most = fastest(clumps, discs.radius, *own, NEIGHBOURS, law.rolling_friction)
+                mass = float(discs.mass.min())
                 if most == 0.0:  # all are with a prescribed velocity
                     continue
                 for _ in range(HALVINGS):  # dashpots of Hertz go with the root of the mass that is looked for
