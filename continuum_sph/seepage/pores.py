@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from continuum_sph.seepage.exchange import apply_drag, apply_reaction, relative_to_soil
 from continuum_sph.seepage.mixture import (
@@ -22,7 +23,7 @@ from continuum_sph.seepage.mixture import (
     share_forces,
 )
 from continuum_sph.seepage.overlap import Overlap, Reach
-from continuum_sph.seepage.pressure_face import PressureFace, continue_in_corners, follow, prescribe_pressure
+from continuum_sph.seepage.pressure_face import PressureFace, continue_behind, follow, prescribe_pressure
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.sheet_pile import CutPairList
 from continuum_sph.seepage.skeleton import Skeleton
@@ -37,9 +38,10 @@ class PoreFlow(Flow):
     """Water of a law among the grains of a skeleton.
 
     resistance : law of drag;  specific_weight (fluid,) N/m³, of several fluids, see `gather_soil`, or empty;  faces :
-    faces of given pressure;  pores (15, fluid + LANES) what water particles have about them, see `mixture`;  excess
-    (fluid,) of volume when pairs were listed last, see `volume_excess`;  borne (soil, 2) N/m, drag on the soil of the
-    last half step;  heat (fluid + soil,) J/m, work that drag took from both layers.
+    faces of given pressure;  enclosing : (l,) numbers of the wall particles that continue the pressure of the water
+    before them below zero, too, as no surface of it is near;  pores (15, fluid + LANES) what water particles have about
+    them, see `mixture`;  excess (fluid,) of volume when pairs were listed last, see `volume_excess`;  borne (soil, 2)
+    N/m, drag on the soil of the last half step;  heat (fluid + soil,) J/m, work that drag took from both layers.
     """
 
     skeleton: Skeleton = field(kw_only=True)
@@ -47,6 +49,7 @@ class PoreFlow(Flow):
     resistance: Resistance = field(kw_only=True)
     specific_weight: Floats = field(default_factory=lambda: np.zeros(0), kw_only=True)
     faces: list[PressureFace] = field(default_factory=list, kw_only=True)
+    enclosing: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64), kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -148,8 +151,9 @@ class PoreFlow(Flow):
                 face.columns, face.pressure, face.heights, self.near(smoothing.kind), layer.x, layer.record,
                 layer.pressure, *face.point, *face.normal,
             )  # fmt: skip
-            continue_in_corners(
-                face.corners, self.near(smoothing.kind), layer.x, layer.v, layer.record, layer.pressure,
+        if len(self.enclosing):
+            continue_behind(
+                self.enclosing, self.near(smoothing.kind), layer.x, layer.v, layer.record, layer.pressure,
                 *self.law.gravity,
             )  # fmt: skip
 

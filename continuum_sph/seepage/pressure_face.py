@@ -50,17 +50,15 @@ class PressureFace:
 
     columns : (m, layers) numbers of its wall particles, those behind each other in a row (`in_columns`);  point :
     (x, y) m on it;  normal : (x, y) of unit length, into the water;  pressure : (m, layers) Pa, at the foot of each
-    particle, settable at any time;  corners : (l,) numbers of the wall particles behind it that lie beyond its ends, in
-    corners of the tank;  heights : (m, layers) m, z̄ at the start, UNSEEN until `arrange`;  whole, slope : (m,) 1/m and
-    1/m², push of each column on the water of the start (`push_of`), and how it grows as the column moves along the
-    normal.
+    particle, settable at any time;  heights : (m, layers) m, z̄ at the start, UNSEEN until `arrange`;  whole, slope :
+    (m,) 1/m and 1/m², push of each column on the water of the start (`push_of`), and how it grows as the column moves
+    along the normal.
     """
 
     columns: NDArray[np.int64]
     point: tuple[float, float]
     normal: tuple[float, float]
     pressure: Floats
-    corners: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     heights: Floats = field(init=False)
     whole: Floats = field(init=False)
     slope: Floats = field(init=False)
@@ -177,14 +175,14 @@ def prescribe_pressure(columns, given, heights, near, x, record, pressure, ox, o
 
 
 @parallel_kernel
-def continue_in_corners(corners, near, x, v, record, pressure, gx, gy):
-    """Overwrites pressure of the wall particles ``corners`` (l,) in ``record`` and ``pressure`` (n,) Pa with that of
-    the water before them continued, of either sign.
+def continue_behind(rows, near, x, v, record, pressure, gx, gy):
+    """Overwrites pressure of the wall particles ``rows`` (l,) in ``record`` and ``pressure`` (n,) Pa with that of the
+    water before them continued, of either sign.
 
     near: see `water.bundles`;  x, v (n, 2) m, m/s;  (gx, gy): gravity, m/s².
     """
-    for number in prange(corners.shape[0]):
-        w = corners[number]
+    for number in prange(rows.shape[0]):
+        w = rows[number]
         if near.start[w] < near.split[w]:
             p, _, _ = wall_mean(w, near, x, v, record, pressure, gx, gy)
             record[w, P] = p

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from continuum_sph.water.eos.law import StateLaw
 from continuum_sph.water.fluids import Fluid
-from continuum_sph.water.kernel_correction import lattice_gradient
+from continuum_sph.water.kernel_correction import lattice_gradient, lattice_shear
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.viscosity import STIFFER
 
@@ -88,6 +88,13 @@ class Law:
     def lattice(self) -> float:
         """What plain gradients are multiplied by: exact for linear fields on the square lattice of the start."""
         return float(lattice_gradient(self.smoothing.kind, self.smoothing.length, self.spacing))
+
+    @cached_property
+    def shear(self) -> float:
+        """Shear modulus over pressure of water whose lattice was not stirred yet: `kernel_correction.lattice_shear`."""
+        if self.corrected:
+            return 0.0
+        return float(lattice_shear(self.smoothing.kind, self.smoothing.length, self.spacing))
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:

@@ -23,18 +23,38 @@ def pressure_face(
 ) -> PressureFace:
     """The face of a section in a tank of a ``size`` (width, height), m.
 
-    x (n, 2) m: all particles;  walls : numbers of the wall particles of the tank, of which those in corners stay walls;
-    weight : ρ g, N/m³.
+    x (n, 2) m: all particles;  walls : numbers of the wall particles of the tank;  weight : ρ g, N/m³.
     """
     axis, (at, inward), (start, end) = section.axis, section.across(size), section.reach(size)
     along, beyond = x[walls, axis], (x[walls, 1 - axis] - at) * inward
     own = (beyond < 0.0) & (along > max(start, 0.0)) & (along < min(end, size[axis]))
-    ends = (beyond < 0.0) & (((along < 0.0) & (start <= 0.0)) | ((along > size[axis]) & (end >= size[axis])))
     point, normal = ((0.0, at), (0.0, inward)) if axis == 0 else ((at, 0.0), (inward, 0.0))
     columns = in_columns(walls[own], x, normal)
-    face = PressureFace(columns, point, normal, np.zeros(columns.shape), walls[ends])
+    face = PressureFace(columns, point, normal, np.zeros(columns.shape))
     face.hydrostatic(x, section.table[0][1], weight)
     return face
+
+
+def enclosing(
+    sections: Sequence[FaceSection], x: Floats, walls: NDArray[np.int64], size: tuple[float, float], *, full: bool
+) -> NDArray[np.int64]:
+    """Numbers of the ``walls`` (k,) of a tank of a ``size`` (m) near which water has no surface, so that they continue
+    its pressure below zero, too: those in corners beside faces, and, in a tank that is ``full`` (`stays_full`), those
+    over the lid.
+
+    Where the pressure under a lid is less than what the rows behind it lie higher, walls that do not pull push the
+    water out of the ground: with the lower head as high as the lid 10 and 4 % more left it than was there (20 and 40
+    rows).  x (n, 2) m: all particles.
+    """
+    places = x[walls]
+    rows = (places[:, 1] > size[1]) & full
+    faces = np.zeros(len(walls), np.bool_)
+    for it in sections:
+        axis, (at, inward), (start, end) = it.axis, it.across(size), it.reach(size)
+        along, behind = places[:, axis], (places[:, 1 - axis] - at) * inward < 0.0
+        rows |= behind & (((along < 0.0) & (start <= 0.0)) | ((along > size[axis]) & (end >= size[axis])))
+        faces |= behind & (along > max(start, 0.0)) & (along < min(end, size[axis]))
+    return walls[rows & ~faces]
 
 
 class FacePart(Part):

@@ -70,6 +70,10 @@ def water_report(scene: Scene, count: int | None = None) -> Report:
     out.row("speed of free fall from the highest water", fall, "m/s")
     out.row("Mach number", mach, "", "at most 0.1 keeps density changes below 1 %")
     out.row("compression at the floor", 100.0 * compression(scene), "%")
+    if _free(scene) and not scene.soil and not law.corrected and scene.gravity > 0.0:
+        deep, shallow = (100.0 * (math.sqrt(1.0 + share * law.shear) - 1.0) for share in (1.0, 2.0))
+        about = f"and {deep:.2g} % where deep, until the water is stirred: its lattice bears shear"
+        out.row("gentle waves are too fast by, where shallow", shallow, "%", about)
     if viscosity > 0.0:
         out.row("Reynolds number", fall * scene.head * tait.density / viscosity)
     if scene.inclusion is not None:

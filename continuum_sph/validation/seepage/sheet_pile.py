@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipj, ellipk, ellipkinc, ellipkm1
 
-from continuum_sph.builders.parts.faces import pressure_face
+from continuum_sph.builders.parts.faces import enclosing, pressure_face
 from continuum_sph.builders.parts.sheet_pile import beside, sheet_pile
 from continuum_sph.scene.face import FaceSection
 from continuum_sph.scene.pile import SheetPileSection
@@ -77,6 +77,7 @@ def held_ground(
     for face in faces:
         flow.faces.append(pressure_face(face, layer.x, of_tank, size, WATER * GRAVITY))
         flow.faces[-1].pressure[:] = WATER * GRAVITY * face.highest  # over water at rest, whose weight plays no part
+    flow.enclosing = enclosing(faces, layer.x, of_tank, size, full=False)
     both = Seepage(flow, frame)
     both.start()
     mass[:n] = flow.porosity * WATER * spacing**2

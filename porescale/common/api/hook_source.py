@@ -5,6 +5,7 @@ import hashlib
 import inspect
 import textwrap
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from types import CodeType, FunctionType
 from typing import Any
 
@@ -49,11 +50,20 @@ def _described(function: Callable[..., Any], seen: set[int], depth: int) -> Iter
         return
     yield source_of(plain) or repr(_compiled(plain.__code__))
     yield from _value("defaults", [plain.__defaults__, plain.__kwdefaults__], plain, seen, depth)
-    used = inspect.getclosurevars(plain)
     names = _names(plain.__code__)
-    known = {name: plain.__globals__[name] for name in sorted(names) if name in plain.__globals__}
-    for name, value in sorted({**known, **used.globals, **used.nonlocals}.items()):
+    known = {name: plain.__globals__[name] for name in names if name in plain.__globals__}
+    for name, value in sorted({**known, **_enclosed(plain)}.items()):
         yield from _value(name, value, plain, seen, depth)
+
+
+def _enclosed(function: FunctionType) -> dict[str, Any]:
+    """Names that a function has from those about it, and their values; without those that have none yet, as its own
+    name has none while it is decorated."""
+    found = {}
+    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+        with suppress(ValueError):  # of a cell that is empty
+            found[name] = cell.cell_contents
+    return found
 
 
 def _names(code: CodeType) -> set[str]:

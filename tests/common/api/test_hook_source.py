@@ -50,6 +50,26 @@ def test_closures_count_and_decorators_do_not():
     assert source_of(hook_of(1.0)) == "def hook(time):\n    return strength * time\n"
 
 
+def test_what_has_no_value_yet_when_a_hook_is_decorated_does_not_count():
+    def hook_of(strength):
+        hashes = []
+
+        def kept(function):
+            hashes.append(hash_of(function))
+            return function
+
+        @kept
+        def hook(time):
+            return strength * scale * time + hook.more  # of which scale and hook have no value yet
+
+        scale = 2.0
+        assert hash_of(hook) != hashes[0]
+        return hashes[0]
+
+    assert hook_of(1.0) == hook_of(1.0)
+    assert hook_of(1.0) != hook_of(2.0)
+
+
 def test_functions_that_call_each_other_come_to_an_end():
     text = "def hook(n):\n    return other(n)\n\n\ndef other(n):\n    return hook(n - 1)\n"
     assert hash_of(made(text)) == hash_of(made(text))

@@ -252,3 +252,10 @@ def test_soil_without_stress_loses_none_in_a_centrifuge():
     """Its buoyancy was divided by next to nothing, and numpy told of an overflow."""
     wet = {"saturated": True, "stress": "none"}
     build(scene(soil=wet, gravity=1e6, water={"density": 1e5, "sound_speed": 1e4}))
+
+
+def test_air_is_refused_beside_water_of_no_viscosity():
+    air = {"water": WATER | {"viscosity": 0.0}, "air": {}}
+    with pytest.raises(InputError, match=r"water\.viscosity = 0\.0 Pa s: leaves the drag on air .*> 0 with \[air\]"):
+        scene(**air)
+    scene(**air | {"water": WATER | {"viscosity": 1e-6}})  # the check that fails: with any there is a measure
