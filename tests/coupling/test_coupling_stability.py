@@ -2,6 +2,7 @@
 
 import json
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -142,6 +143,17 @@ def test_what_has_a_number_is_named_by_the_largest():
     assert worst_cell(values) == (2, 5)
     values[1, 1] = math.inf
     assert worst_cell(values) == (1, 1)
+
+
+def test_a_density_without_end_is_named_without_a_warning_of_numpy():
+    watch = sense()
+    watch.fluid.populations[1, 5, 8] = math.inf  # of the cell (7, 4)
+    with pytest.warns(RuntimeWarning, match="invalid value"):  # as its velocity is reckoned: inf/inf
+        watch.fluid.fields()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(Unstable, match=r"at cell \(7, 4\) "):
+            watch.check(3, 3.0)
 
 
 def test_a_disc_that_is_nowhere_hides_no_fault_of_the_fluid():
