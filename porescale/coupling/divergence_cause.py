@@ -36,23 +36,13 @@ def likely_cause(now: Circumstances) -> str:
     What is wrong from the start comes first: grains with an operator, or of a weight, that cannot last.  Speed and
     pressure may be the first signs of these.
     """
-    beyond = _held_only(now) or _light(now) or max(filter(None, (_thin(now), _fast(now), _pressed(now))), default=None)
+    beyond = _light(now) or max(filter(None, (_thin(now), _fast(now), _pressed(now))), default=None)
     if beyond is None:
         return "likely cause: none that is known of; a shorter fluid.step or a finer spacing often helps"
     return f"likely cause: {beyond[1]}"
 
 
 Found = tuple[float, str] | None
-
-
-def _held_only(now: Circumstances) -> Found:
-    """Free grains with an operator that is for held ones: in the map they run away at any density ratio."""
-    if now.density_ratio is None or now.solid_operator not in limits.HELD_ONLY:
-        return None
-    return float("inf"), (
-        f"fluid.solid_operator = '{now.solid_operator}' with free grains, which run away with it;"
-        f" take {limits.RECOMMENDED!r}"
-    )
 
 
 def _light(now: Circumstances) -> Found:

@@ -24,10 +24,8 @@ UNDER_A_LID_WITH_EDDIES = {name: holds.under_a_lid_with_eddies for name, holds i
 STEADIEST = max(_MEASURED, key=lambda name: min(_MEASURED[name]))
 """The operator that holds furthest where it holds least."""
 
-HELD_ONLY = tuple(name for name, operator in SOLID_OPERATORS.items() if operator.held_only)
-"""Solid operators with which free discs run away."""
 RECOMMENDED = next(iter(SOLID_OPERATORS))
-"""The solid operator to take instead."""
+"""The solid operator to take where nothing speaks for another."""
 FOR_NARROW_GAPS = next(name for name, operator in SOLID_OPERATORS.items() if operator.narrow_gaps)
 """The solid operator for gaps of few cells."""
 _ON_THE_MAP = {f"{name} {weight}": holds for name, it in SOLID_OPERATORS.items() for weight, holds in it.holds.items()}

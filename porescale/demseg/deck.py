@@ -139,6 +139,8 @@ def _grains(file: Reader) -> Deck:
     file.must(mode in (0, 1), "mode", mode, "0 (random discs) or 1 (bodies)")
     for name, value in (("mode2", mode2), ("mode3", mode3)):
         file.must(value == 0, name, value, "0, the default: the tutorial says what no other does")
+    if mode not in (0, 1):
+        file.done()  # what follows has a layout that is not known
     dt, gx, gy = file.record(("dt", float), ("gx", float), ("gy", float))
     file.must(dt > 0.0, "dt", dt, "> 0")
     (count,) = file.record(("nmat", int))

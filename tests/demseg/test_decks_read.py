@@ -61,6 +61,14 @@ def test_words_that_begin_with_a_digit_or_are_no_finite_number_are_refused(tmp_p
         Reader(file).record(("a", float), ("b", float), ("c", float))
 
 
+def test_of_a_mode_that_is_not_known_nothing_else_is_blamed(tmp_path):
+    random = "{} 0 0\n5.0d-5 0 -980\n1\n1 1 1 0 0 20\n0 9 0 9 0\n0.5 0.5\n1\n1.0\n"
+    assert read_deck(decks.write(tmp_path / "known", random.format(0))).random is not None
+    with pytest.raises(InputError) as caught:
+        read_deck(decks.write(tmp_path / "other", random.format(2)))
+    assert [it.key for it in caught.value.faults] == ["line 1, mode"]
+
+
 def test_mode_0_refuses_more_discs_than_a_deck_may_have(tmp_path):
     from porescale.demseg.deck import MOST_BODIES, Random
 

@@ -164,9 +164,7 @@ def test_a_choice_that_does_nothing_is_warned_of():
     assert "is not used" not in warnings(channel(fluid__magic=0.25))
     assert "nothing solid in the fluid" in warnings(channel(disc=[], fluid__solid_operator="odd-SC1"))
     assert "nothing solid in the fluid" not in warnings(channel(disc=[]))
-    assert "free grains ran away" in warnings(column(fluid__solid_operator="SC3"))
     narrow = {"fluid__solid_operator": "narrow-wall"}
-    assert "free grains ran away" not in warnings(column(**narrow))
     assert "is made for 0.1875" in warnings(channel(**narrow, fluid__magic=0.0417))
     assert "is made for" not in warnings(channel(**narrow)) + warnings(channel(fluid__magic=0.0417))
     low = {"fluid__viscosity": 3e-7}  # cell Reynolds number 0.1 * 2e-4/3e-7 = 67

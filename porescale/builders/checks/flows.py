@@ -10,7 +10,7 @@ from porescale.analysis.permeability import gebart
 from porescale.builders.checks.limits import DENSITY_REFUSE
 from porescale.builders.checks.own_laws import impulse, largest_force
 from porescale.builders.initial.contact_laws import MaterialPlan, density_of_packing
-from porescale.builders.initial.placed import by_hand
+from porescale.builders.initial.placed import by_hand, controls_by_hand
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.common.compiled.own import OwnLaw
 from porescale.common.core.constants import EDGE
@@ -104,11 +104,20 @@ def _has_friction(d: Domain, name: str) -> bool:
 
 
 def _standing(scene: Scene) -> list[Solid]:
-    """Held discs that stay where they are, turning or not, held polygons, and rectangles that stand, as far as these
-    are in the box."""
+    """Discs and polygons that are held, or that a [[control]] keeps, where they are, turning or not, and rectangles
+    that stand, as far as these are in the box; of a packing none."""
     size = scene.domain.width, scene.domain.height
     found = [_disc(it.x, it.y, 0.5 * it.diameter) for it in scene.disc if it.stays]
-    found += [_outlined(it.points, *copy) for it in scene.polygon if it.held for copy in copies_of(it)]
+    ratio = (scene.grains.hydraulic_radius_ratio if scene.grains else None) or 1.0
+    kept = zip(by_hand(scene), controls_by_hand(scene), strict=True)
+    found += [_disc(it.x, it.y, 0.5 * it.diameter, ratio) for it, by in kept if by and by.stays]
+    still = {it.of for it in scene.control if it.stays}
+    copies = ((it, copy) for it in scene.polygon for copy in copies_of(it))
+    found += [
+        _outlined(it.points, *copy)
+        for number, (it, copy) in enumerate(copies)
+        if it.held or ("polygon", number) in still
+    ]
     for it in scene.rectangle:
         lower = max(it.lower[0], 0.0), max(it.lower[1], 0.0)
         upper = min(it.upper[0], size[0]), min(it.upper[1], size[1])

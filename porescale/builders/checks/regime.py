@@ -31,7 +31,6 @@ from porescale.builders.initial.fluid_options import collision_options, weight_o
 from porescale.builders.initial.frames import Placed
 from porescale.builders.initial.placed import by_hand, controls_by_hand
 from porescale.common.core.errors import Fault
-from porescale.coupling.limits import HELD_ONLY
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.own import OwnContact
@@ -315,11 +314,6 @@ def _check_operator(
         warnings.append(
             f"fluid.magic = {fluid.magic:g}: the solid operator {fluid.solid_operator!r} is made for {made_for:g}, and"
             " drag in dense beds is some 10 % off with another; leave it out"
-        )
-    if fluid.solid_operator in HELD_ONLY and scene.grains is not None:
-        warnings.append(
-            f"fluid.solid_operator = {fluid.solid_operator!r}: free grains ran away with it in every trial; it is for"
-            " held discs"
         )
     slowness = speed / scales.velocity
     if fluid.precision == "float32" and 0 < slowness < SINGLE_PRECISION:

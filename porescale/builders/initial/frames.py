@@ -271,7 +271,8 @@ def lightest_frame(placed: Sequence[Placed], every: list[ContactLaw], radius: fl
     (left, low), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     small = None if radius is None else make_discs([(left - far, low)], radius, 1.0)
     box = Box((left - 2.0 * far, low - far), (right + far, top + far), *["open"] * 4)
-    grains = framed(small, moving, every[0], box)
+    of_one = [np.zeros(len(frame.corners), np.int64) for frame in moving]  # no law of these grains is used
+    grains = framed(small, moving, every[0], box, corner_material=of_one)
     return grains.steering.lightest(every)
 
 

@@ -1,6 +1,7 @@
 """A rectangle along the grid: a gate of finite thickness, a piston, a step.
 
-What it covers of a cell is the product of two lengths, exactly.  A straight wall needs no radius shift.
+What it covers of a cell is the product of two lengths, exactly.  A straight wall needs no radius shift; corners that
+stand free would need the tips of polygon.py, which would stick out of a wall that several rectangles make.
 """
 
 import numpy as np

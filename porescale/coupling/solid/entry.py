@@ -32,11 +32,11 @@ class SolidOperator:
     in the lattice;  half_step_correction : whether full cells are given a velocity whose time-centred value is the
     body's (load.py);  turns_back : whether full cells turn populations back, so that the fluid inside a free body
     answers it with a change of sign each step (immersed.py);  force_everywhere : whether the body force acts in the
-    whole of a cell;  held_only : whether free discs run away with it;  longest_relaxation_time : up to which drag is
-    right;  magic : the one magic parameter that it is made for, None for any;  narrow_gaps : whether a gap of 1.4 cells
-    carries what it should;  films : whether films (lubrication.py) were measured with it;  gaps : gap in cells between
-    discs of a square array, and by how much of it the drag is too small there, the worst of relaxation times up to 1;
-    ascending;  holds : by weight;  order : place in lists, the recommended one first.
+    whole of a cell;  longest_relaxation_time : up to which drag is right;  magic : the one magic parameter that it is
+    made for, None for any;  narrow_gaps : whether a gap of 1.4 cells carries what it should;  films : whether films
+    (lubrication.py) were measured with it;  gaps : gap in cells between discs of a square array, and by how much of it
+    the drag is too small there, the worst of relaxation times up to 1; ascending;  holds : by weight;  order : place in
+    lists, the recommended one first.
     """
 
     name: str
@@ -49,7 +49,6 @@ class SolidOperator:
     half_step_correction: bool = False
     turns_back: bool = False
     force_everywhere: bool = False
-    held_only: bool = False
     longest_relaxation_time: float = 1.5
     magic: float | None = None
     narrow_gaps: bool = False

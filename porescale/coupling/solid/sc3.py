@@ -5,7 +5,8 @@ Omega^s_i = f_-i - f_i + f^eq_i(rho, v) - f^eq_-i(rho, v);  the even halves of t
     Omega^s_i = f_-i - f_i + 6 w_i rho c.v
 
 The momentum of f + Omega^s is  -sum f c + 2 rho v:  the solid gains  2 B (sum f c - rho v), twice SC1's share, and the
-half force h has no part in it, since u has none.
+half force h has no part in it, since u has none.  A full cell turns its populations back: bodies have the load of two
+steps (immersed.py).
 """
 
 from typing import NamedTuple
@@ -41,9 +42,9 @@ def _momentum_to_solid(cell, rho, jx, jy, rate, solid):
 
 SOLID_OPERATOR = SolidOperator(
     name="SC3",
-    purpose="bounce-back from the grain: for grains that are held still; moving ones are noisy, and free ones run away",
+    purpose="bounce-back from the grain; what moves is noisy",
     law=Sc3,
     constants={"one": 1.0},
-    held_only=True,  # in the map at nearly every density ratio (coupling.fall, coupling.fly) and in beds (coupling.bed)
+    turns_back=True,
     order=4,
 )

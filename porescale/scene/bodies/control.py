@@ -41,6 +41,11 @@ class Controlled(Section):
         return kind, int(getattr(self, kind))
 
     @property
+    def stays(self) -> bool:
+        """Whether the body stays where it is; it may turn."""
+        return all(it.prescribes and it.fastest == 0.0 for it in (self.x, self.y))
+
+    @property
     def called(self) -> str:
         """Name of the body in the columns of forces.csv."""
         kind, number = self.of

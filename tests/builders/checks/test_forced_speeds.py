@@ -54,3 +54,20 @@ def test_a_held_polygon_holds_back_what_its_disc_does():
     held = speed(polygon=[one | {"held": True}], **grains)
     assert held == pytest.approx(speed(**disc()), rel=10 * (math.pi / SIDES) ** 2)
     assert speed(polygon=[one], **grains) > 10 * held  # the check that must fail: a free one is carried along
+
+
+def test_what_a_control_keeps_where_it_is_holds_back_too():
+    grains = {
+        "grains": {"density": 2000, "hydraulic_radius_ratio": 1, "grain": [{**PLACE, "diameter": DIAMETER}]},
+        "contact": {"stiffness": 1e4, "restitution": 0.5},
+    }
+    still = {"x": {"velocity": 0}, "y": {"velocity": 0}}
+    assert speed(control=[{"grain": 0, **still, "rotation": {"velocity": 0.2}}], **grains) == speed(**disc())
+    one = {"sides": SIDES, "diameter": DIAMETER, "thickness": 1e-9, "at": [[PLACE["x"], PLACE["y"]]], "angle": [0.3]}
+    grains["grains"] = {"density": 2000, "hydraulic_radius_ratio": 1}
+    held = speed(polygon=[one | {"held": True}], **grains)
+    assert speed(polygon=[one], control=[{"polygon": 0, **still}], **grains) == held
+    # The check that must fail: one that is free along y, or moves, may go out of the way.
+    assert speed(polygon=[one], control=[{"polygon": 0, "x": {"velocity": 0}}], **grains) > 10 * held
+    moves = {"x": {"velocity": 1e-5}, "y": {"velocity": 0}}
+    assert speed(polygon=[one], control=[{"polygon": 0, **moves}], **grains) > 10 * held

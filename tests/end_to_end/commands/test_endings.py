@@ -184,7 +184,6 @@ LIGHT = {**FAST["grains"], "density": 50}
             ({"fluid__viscosity": 1e-9, "fluid__operator": "bgk"}, "'bgk' is known to hold up to"),
             ({"fluid__viscosity": 1e-9, "fluid__operator": "mrt"}, "'mrt' is known to hold up to"),
             ({"fluid__viscosity": 1e-9, "fluid__precision": "float32"}, "'trt' is known to hold up to"),
-            ({"fluid__solid_operator": "SC3"}, "fluid.solid_operator = 'SC3' with free grains"),
         )),
     ],
 )  # fmt: skip
