@@ -27,6 +27,7 @@ from continuum_sph.seepage.pressure_face import PressureFace, continue_behind, f
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.sheet_pile import CutPairList
 from continuum_sph.seepage.skeleton import Skeleton
+from continuum_sph.seepage.swelling import add_swelling, gather_motion
 from continuum_sph.seepage.volume_excess import PACE, Edges, excess_about_water, fill_about_soil, room_before, take_up
 from continuum_sph.water.step import Flow
 from porescale.common.compiled.simd import LANES
@@ -59,6 +60,7 @@ class PoreFlow(Flow):
         self.enclosed = np.zeros(fluid, np.bool_)
         self.home = self.layer.x.copy()  # of walls: where they stood at the start, grains reach no further
         self.thrust, self.push, self.parts = np.zeros((fluid, 4)), np.zeros((fluid, 2)), np.zeros((4, fluid + LANES))
+        self.motion = np.zeros((0 if self.skeleton.swelling is None else fluid, 4))
         self.full, self.excess, self.corrected = np.zeros(self.skeleton.count), np.zeros(fluid), False
         self.borne = np.zeros((self.skeleton.count, 2))
         self.heat = np.zeros(fluid + self.skeleton.count)
@@ -89,6 +91,8 @@ class PoreFlow(Flow):
             layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, self.budget[0],
             self.thrust,
         )  # fmt: skip
+        if soil.swelling is not None:
+            self.swell(soil.swelling)
         if self.corrected:
             take_up(
                 layer.fluid, layer.mass, layer.record, self.pores, self.excess, PACE / length, layer.rate,
@@ -99,6 +103,16 @@ class PoreFlow(Flow):
         )  # fmt: skip
         if new:
             self.find_excess()
+
+    def swell(self, swelling: Floats) -> None:
+        """Let pores swell as the stress of soil that yields takes it to, see `swelling`."""
+        layer, soil, law = self.layer, self.skeleton, self.law
+        gather_motion(layer.fluid, *self.overlap.rows, soil.burden, swelling, self.pores, self.motion)
+        add_swelling(
+            layer.fluid, layer.record, self.near(law.smoothing.kind), self.gradients.matrix,
+            1.0 if law.corrected else law.lattice, layer.mass, self.pores, self.motion, layer.v,
+            float(soil.x[:, 1].max()), layer.rate, self.budget[0],
+        )  # fmt: skip
 
     def find_excess(self) -> None:
         """Overwrite ``excess`` with that of now."""

@@ -44,7 +44,8 @@ class Skeleton:
     x m;  v m/s;  acceleration m/s²;  force N/m, overwritten by water;  mass kg/m, infinite for soil that is held;
     density : of soil without its water, and ``solid``, of its grains, kg/m³: a particle's volume is that of its grains
     times solid over density;  grains : volume of solid, m² (per metre of depth), constant;  permeability : k, m/s;
-    foot : of a pile, see `sheet_pile.Foot`, or None.
+    swelling (soil, 2) : see `soil.stress.deform`, None where pores swell by sums over the soil's mean velocity;  foot :
+    of a pile, see `sheet_pile.Foot`, or None.
     """
 
     x: Floats
@@ -56,6 +57,7 @@ class Skeleton:
     solid: float
     grains: Floats
     permeability: Floats
+    swelling: Floats | None = None
     foot: Foot | None = None
     plain: Floats = field(init=False)  # grains/k, m s
     resisting: Floats = field(init=False)  # the same as water has it, with what a pile's foot makes of it
@@ -101,7 +103,10 @@ def skeleton_of(flow: SoilFlow, density: float, permeability: Floats | float) ->
     k = np.broadcast_to(np.asarray(permeability, np.float64), n).copy()
     mass = soil.mass[:n]
     own = soil.density[:n]
-    return Skeleton(soil.x[:n], soil.v[:n], soil.acceleration, soil.force, mass, own, density, mass / density, k)
+    swelling = soil.swelling if flow.law.bounded else None
+    return Skeleton(
+        soil.x[:n], soil.v[:n], soil.acceleration, soil.force, mass, own, density, mass / density, k, swelling
+    )
 
 
 class Frame:

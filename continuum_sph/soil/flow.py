@@ -124,10 +124,10 @@ class SoilFlow:
         spin = -1.0 if law.printed_spin else 1.0
         max_sound2 = deform(
             soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.separation_strain,
-            soil.plastic_shear, self.sheared, soil.record,
+            soil.plastic_shear, self.sheared, soil.swelling, soil.record,
             Straining(
                 step, min(step, LASTING * self.strained), spin, law.most, law.damping / law.smoothing.length, law.even,
-                law.bounded,
+                law.bounded, law.bearing,
             ),
         )  # fmt: skip
         if self.sheared.size:

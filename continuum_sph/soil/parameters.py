@@ -20,6 +20,8 @@ PARTED = 0.25
 STREWN = 1.025
 """`stress.CROWD` over a lattice's up to which nothing swells: as much as particles strewn by a fifth of a spacing have,
 1.022 in the mean, so that disorder alone lifts no ground."""
+import os
+BEARING = float(os.environ.get("BEAR", "0.1"))
 RULES = ("sound", "acceleration", "other layers")
 
 
@@ -104,6 +106,11 @@ class SoilLaw:
         """Rate of shear strain (1/s) up to which particles part in a ``step`` (s)."""
         taken = self.spacing_recovery * step
         return PARTED / taken if taken > 0.0 else float("inf")
+
+    @property
+    def bearing(self) -> float:
+        """Mean stress (Pa) from which on soil counts as bearing: BEARING of what a row of particles weighs."""
+        return BEARING * self.materials[0].density * math.hypot(*self.gravity) * self.spacing
 
     @property
     def even(self) -> float:

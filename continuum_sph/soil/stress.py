@@ -37,7 +37,8 @@ CROWDED = 1.6
 class Straining(NamedTuple):
     """step, s;  spreading: for how long diffusion lasts, s;  spin: 1, or -1 for the sign of eq. 38 in Maeda & Sakai
     2004;  most: shear strain of a step that `accelerate` follows;  damping: α/h, 1/m;  even: `CROWD` beyond which
-    sheared soil swells;  plastic: stress diffuses by plastic shear strain, not by all of it."""
+    sheared soil swells;  plastic: stress diffuses by plastic shear strain, not by all of it;
+    bearing: mean stress from which on soil counts as bearing, Pa."""
 
     step: Any
     spreading: Any
@@ -46,14 +47,17 @@ class Straining(NamedTuple):
     damping: Any
     even: Any
     plastic: Any
+    bearing: Any
 
 
 @parallel_kernel
 def deform(
-    density, stress, material, table, matrix, spread, separation_strain, plastic_shear, sheared, record, straining
+    density, stress, material, table, matrix, spread, separation_strain, plastic_shear, sheared, swells, record,
+    straining,
 ):  # fmt: skip
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``separation_strain``, ``plastic_shear``
-    (soil,) and in ``record`` (n, 16) c/ρ, less where damping would take more than a step follows, rate of shear strain
+    (soil,), ``swells`` (soil, 2), T of `seepage.swelling` in 1/s and 1 where soil yields and bears stress, and in
+    ``record`` (n, 16) c/ρ, less where damping would take more than a step follows, rate of shear strain
     (of plastic strain, if ``straining.plastic``) and σ·K.  Where soil softens ``sheared`` (soil,) is overwritten by the
     plastic shear strain of the step, and ``plastic_shear`` is left; else it is empty.
 
@@ -98,7 +102,11 @@ def deform(
             sheared[i] = flow
         else:
             plastic_shear[i] += flow
-        speed2 = (row[AREA] + row[SHEAR]) * stiffness_share(0.5 * (xx + yy), row) / density[i]
+        share = stiffness_share(0.5 * (xx + yy), row)
+        diffused = 0.5 * (spread[i, XX] + spread[i, YY]) * (spreading / step if step > 0.0 else 0.0)
+        swells[i, 0] = axx + ayy - diffused / (row[AREA] * share)
+        swells[i, 1] = 1.0 if flow > 0.0 and opened == 0.0 and xx + yy > 2.0 * straining.bearing else 0.0
+        speed2 = (row[AREA] + row[SHEAR]) * share / density[i]
         max_sound2 = max(max_sound2, speed2)
         kxx = matrix[i, 0]
         kxy = matrix[i, 1]
