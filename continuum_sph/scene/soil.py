@@ -101,8 +101,8 @@ class SoilNumerics(Section):
     parting : with 0 soil does not swell where its particles crowd, either.
     damping, damping_viscosity, stress_diffusion : left out, they follow from gravity and the ground's height and
     stiffness, see `continuum_sph.soil.steadying`; "approach" and "bounded" have 0.2.
-    damping_of : "bounded", for slides that begin slowly: where soil yields, zig-zags are damped by 4 % of the shear
-    stress at most, and stress diffuses there alone.  Fast failures of full ground come late with few rows.
+    damping_of : "bounded", for slides that begin slowly, and full ground: where soil yields, zig-zags are damped by 4 %
+    of the shear stress at most, stress diffuses there alone, and pores swell as stress takes it to.  Columns run far.
     """
 
     gradient: Literal["corrected", "plain"] = pydantic.Field(

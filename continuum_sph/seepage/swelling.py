@@ -14,8 +14,9 @@ soil that shears gains strength, the more the stiffer it is and the fewer its ro
     dρ_i/dt = -(ρ_i/n_i) {(∇·q)_i + a_i y_i (T_i - D_i)},    T_i = Σ V_s W_is T_s/Σ V_s W_is                 (added)
 
 with a from 0 to 1 where soil takes up from HALF to INSIDE of the kernel (water over the ground has no soil about it),
-and y the share of the soil there that yields and bears stress: elastic soil has D and T alike, and water, far stiffer
-than soil, would zig-zag by what they differ.  What pressure gains or loses is booked with that of diffusion.
+and y from 0 to 1 where 0 to a third of the soil there yields in a step and bears stress: elastic soil has D and T
+alike, and water, far stiffer than soil, would zig-zag by what they differ; and soil that comes off a floor swells in no
+stress.  What pressure gains or loses is booked with that of diffusion.
 """
 
 import numpy as np
@@ -35,6 +36,8 @@ HALF = 0.5
 MEAN_X, MEAN_Y, SWELLING, YIELDING = range(4)
 """Columns of ``motion``: mean velocity of the soil about a particle, m/s;  T, 1/s;  y, or NONE without soil."""
 NONE = -1.0
+SURE = 3.0
+"""y over the share of soil that yields in a step: particles that shear yield in most steps, not in all."""
 
 
 @parallel_kernel
@@ -64,7 +67,7 @@ def gather_motion(fluid, near, soil, weight, burden, swelling, pores, motion):
             motion[i, MEAN_X] = pores[FLUX_X, i] / grains
             motion[i, MEAN_Y] = pores[FLUX_Y, i] / grains
             motion[i, SWELLING] = total / whole
-            motion[i, YIELDING] = min(1.0, 3.0 * yielding / whole)
+            motion[i, YIELDING] = min(1.0, SURE * yielding / whole)
 
 
 @parallel_kernel

@@ -20,8 +20,9 @@ PARTED = 0.25
 STREWN = 1.025
 """`stress.CROWD` over a lattice's up to which nothing swells: as much as particles strewn by a fifth of a spacing have,
 1.022 in the mean, so that disorder alone lifts no ground."""
-import os
-BEARING = float(os.environ.get("BEAR", "0.1"))
+BEARING = 0.5
+"""Mean stress, over what a row of particles weighs, from which on soil counts as bearing: less has the top row, and
+soil that water lifts."""
 RULES = ("sound", "acceleration", "other layers")
 
 

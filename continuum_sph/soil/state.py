@@ -42,7 +42,7 @@ class Soil:
     plastic_shear: Floats = field(init=False)
     record: Floats = field(init=False)  # (n, 16) all that a pair reads of a partner
     matrix: Floats = field(init=False)  # (soil, 5) of the gradient correction, see `gradient`
-    swelling: Floats = field(init=False)  # (soil, 2), see `stress.deform`
+    swelling: Floats = field(init=False)  # (soil, 2), see `stress.deform`; without rows unless pores need it
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the soil
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
 
@@ -56,7 +56,7 @@ class Soil:
         self.force, self.acceleration, self.drift = (np.zeros((self.soil, 2)) for _ in range(3))
         self.spread = np.zeros((self.soil, 7))
         self.separation_strain, self.plastic_shear = np.zeros(self.soil), np.zeros(self.soil)
-        self.swelling = np.zeros((self.soil, 2))
+        self.swelling = np.zeros((0, 2))
         self.record, self.facing, self.length = np.zeros((n, 16)), np.zeros((n, 4)), np.zeros(n)
         self.matrix = np.tile([1.0, 0.0, 1.0, 0.0, 0.0], (self.soil, 1))
 

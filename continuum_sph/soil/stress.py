@@ -56,8 +56,8 @@ def deform(
     straining,
 ):  # fmt: skip
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``separation_strain``, ``plastic_shear``
-    (soil,), ``swells`` (soil, 2), T of `seepage.swelling` in 1/s and 1 where soil yields and bears stress, and in
-    ``record`` (n, 16) c/ρ, less where damping would take more than a step follows, rate of shear strain
+    (soil,), ``swells`` (soil, 2), T of `seepage.swelling` in 1/s and 1 where soil yields and bears stress, or empty,
+    and in ``record`` (n, 16) c/ρ, less where damping would take more than a step follows, rate of shear strain
     (of plastic strain, if ``straining.plastic``) and σ·K.  Where soil softens ``sheared`` (soil,) is overwritten by the
     plastic shear strain of the step, and ``plastic_shear`` is left; else it is empty.
 
@@ -103,9 +103,10 @@ def deform(
         else:
             plastic_shear[i] += flow
         share = stiffness_share(0.5 * (xx + yy), row)
-        diffused = 0.5 * (spread[i, XX] + spread[i, YY]) * (spreading / step if step > 0.0 else 0.0)
-        swells[i, 0] = axx + ayy - diffused / (row[AREA] * share)
-        swells[i, 1] = 1.0 if flow > 0.0 and opened == 0.0 and xx + yy > 2.0 * straining.bearing else 0.0
+        if swells.shape[0] > 0:
+            diffused = 0.5 * (spread[i, XX] + spread[i, YY]) * (spreading / step if step > 0.0 else 0.0)
+            swells[i, 0] = axx + ayy - diffused / (row[AREA] * share)
+            swells[i, 1] = 1.0 if flow > 0.0 and opened == 0.0 and xx + yy > 2.0 * straining.bearing else 0.0
         speed2 = (row[AREA] + row[SHEAR]) * share / density[i]
         max_sound2 = max(max_sound2, speed2)
         kxx = matrix[i, 0]

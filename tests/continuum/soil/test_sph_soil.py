@@ -97,7 +97,8 @@ def test_kernels_run_as_plain_python(monkeypatch):
         record = soil.record.copy()
         strain(
             soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread, soil.separation_strain,
-            soil.plastic_shear, np.zeros(0), soil.record, Straining(1e-4, 1e-4, 1.0, law.most, 0.0, law.even, False),
+            soil.plastic_shear, np.zeros(0), soil.swelling, soil.record,
+            Straining(1e-4, 1e-4, 1.0, law.most, 0.0, law.even, False, law.bearing),
         )  # fmt: skip
         push(soil.soil, soil.record, soil.facing, *made, flow.near, choices)
         return record, soil.acceleration.copy()

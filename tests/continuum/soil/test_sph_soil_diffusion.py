@@ -52,8 +52,8 @@ def test_volumes_diffuse_where_soil_is_sheared_and_their_sum_stays():
     mass = soil.mass[: soil.soil]
     deform(
         soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread,
-        soil.separation_strain, soil.plastic_shear, np.zeros(0), soil.record,
-        Straining(1e-3, 1e-3, 1.0, law.most, 0.0, law.even, False),
+        soil.separation_strain, soil.plastic_shear, np.zeros(0), soil.swelling, soil.record,
+        Straining(1e-3, 1e-3, 1.0, law.most, 0.0, law.even, False, law.bearing),
     )  # fmt: skip
     np.testing.assert_allclose(mass / soil.density, volume + 1e-3 * grown, rtol=4 * np.finfo(float).eps)
 
