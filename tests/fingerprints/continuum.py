@@ -189,6 +189,7 @@ SEEPAGE = {
     "beside, elastic": (BESIDE, "elastic = true", RESERVOIRS, STILL),
     "rising level": (BESIDE, "", RISING, STILL),
     "over": (OVER, "saturated = true", "", ""),
+    "over, bounded": (OVER, 'saturated = true\nnumerics = {damping_of = "bounded"}', "", ""),
     "over, kozeny-carman": (OVER, CARMAN, "", 'gradient = "corrected"\nshifting = 1.0'),
     "pile": (OVER, "saturated = true", PILE.format(faces="slip"), STILL),
     "pile that holds": (OVER, "", PILE.format(faces="hold"), ""),
