@@ -106,12 +106,11 @@ class PoreFlow(Flow):
 
     def swell(self, swelling: Floats) -> None:
         """Let pores swell as the stress of soil that yields takes it to, see `swelling`."""
-        layer, soil, law = self.layer, self.skeleton, self.law
+        layer, soil = self.layer, self.skeleton
         gather_motion(layer.fluid, *self.overlap.rows, soil.burden, swelling, self.pores, self.motion)
         add_swelling(
-            layer.fluid, layer.record, self.near(law.smoothing.kind), self.gradients.matrix,
-            1.0 if law.corrected else law.lattice, layer.mass, self.pores, self.motion, layer.v,
-            float(soil.x[:, 1].max()), layer.rate, self.budget[0],
+            layer.fluid, layer.record, self.near(self.law.smoothing.kind), self.gradients.matrix, layer.mass,
+            self.pores, self.motion, layer.v, float(soil.x[:, 1].max()), layer.rate, self.budget[0],
         )  # fmt: skip
 
     def find_excess(self) -> None:

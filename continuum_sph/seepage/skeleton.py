@@ -103,12 +103,10 @@ def skeleton_of(flow: SoilFlow, density: float, permeability: Floats | float) ->
     k = np.broadcast_to(np.asarray(permeability, np.float64), n).copy()
     mass = soil.mass[:n]
     own = soil.density[:n]
+    skeleton = Skeleton(soil.x[:n], soil.v[:n], soil.acceleration, soil.force, mass, own, density, mass / density, k)
     if flow.law.bounded:
-        soil.swelling = np.zeros((n, 2))
-    swelling = soil.swelling if flow.law.bounded else None
-    return Skeleton(
-        soil.x[:n], soil.v[:n], soil.acceleration, soil.force, mass, own, density, mass / density, k, swelling
-    )
+        skeleton.swelling = soil.swelling = np.zeros((n, 2))
+    return skeleton
 
 
 class Frame:

@@ -71,13 +71,13 @@ def gather_motion(fluid, near, soil, weight, burden, swelling, pores, motion):
 
 
 @parallel_kernel
-def add_swelling(fluid, record, near, matrix, lattice, mass, pores, motion, standing, top, rate, power):
+def add_swelling(fluid, record, near, matrix, mass, pores, motion, standing, top, rate, power):
     """Adds to ``rate`` (fluid,) kg/(m³ s) of densities what takes T in place of D, and takes from ``power`` (fluid, 6)
     W/m what that gives; None without a budget.
 
     record (n, 8), mass (fluid…,) kg/m: of the water, with whole volumes;  near: see `water.bundles`;  matrix (fluid,
-    4): gradient correction, None for plain gradients, then times ``lattice``;  pores: see `mixture`;  motion: of
-    `gather_motion`;  standing (n, 2): velocity of walls, m/s;  top: height of the uppermost soil, m.
+    4): gradient correction;  pores: see `mixture`;  motion: of `gather_motion`;  standing (n, 2): velocity of walls,
+    m/s;  top: height of the uppermost soil, m.
     """
     for i in prange(fluid):
         among = min(1.0, max(0.0, (pores[SOIL, i] / pores[ROOM, i] - HALF) / (INSIDE - HALF)))
@@ -85,7 +85,7 @@ def add_swelling(fluid, record, near, matrix, lattice, mass, pores, motion, stan
         if among > 0.0 and mass[i] > 0.0:  # one that was taken out since is not there
             seen = seen_among_water(i, record, near, matrix, motion)
             seen += seen_by_walls(i, record, near, matrix, motion, standing, top)
-            share = among * (lattice * seen - motion[i, SWELLING]) / pores[POROSITY, i]
+            share = among * (seen - motion[i, SWELLING]) / pores[POROSITY, i]
             rate[i] += record[i, RHO] * share
             if power is not None:
                 power[i, DIFFUSIVE] -= mass[i] * record[i, P] / record[i, RHO] * share

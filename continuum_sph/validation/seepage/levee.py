@@ -32,7 +32,7 @@ class Levee:
     rows : particles over its height;  height, crest : m;  river, land : run of its slopes over the height;  pool,
     plain : breadth of river and land beside it, m;  stiffness : E, Pa;  ratio : K_w/(n M) of the water;  permeability
     m/s;  friction : degrees;  cohesion : Pa;  low, high : levels of the river over the height;  diffusion : χ of the
-    soil, left out: as of any ground (`soil.steadying`);  end : s.
+    soil, left out: as of any ground (`soil.steadying`);  bounded : its damping;  end : s.
     """
 
     rows: int = 12
@@ -50,6 +50,7 @@ class Levee:
     low: float = 0.6
     high: float = 0.95
     diffusion: float | None = None
+    bounded: bool = False
     settle: float = 0.5
     rising: float = 0.5
     end: float = 5.5
@@ -83,7 +84,9 @@ class Levee:
         foot, top, edge, toe = self.corners
         width = toe + self.whole(self.plain)
         low, high = self.low * self.height, self.high * self.height
-        given = {} if self.diffusion is None else {"stress_diffusion": self.diffusion}
+        given: dict[str, Any] = {} if self.diffusion is None else {"stress_diffusion": self.diffusion}
+        if self.bounded:
+            given["damping_of"] = "bounded"
         covered = self.whole(foot + (top - foot) * self.low)
         return {
             "title": "A saturated levee under a sudden rise of the river",

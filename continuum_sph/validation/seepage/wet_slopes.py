@@ -12,12 +12,10 @@ it is: none on the water, of its weight, and -(1 - n) ρ_w g sin β on the soil.
 import functools
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.seepage import Resistance, Seepage
 from continuum_sph.soil import Material, Rate, SoilFlow
-from continuum_sph.soil.steadying import WEIGHTLESS
 from continuum_sph.validation.seepage.setups import ALPHA, COLUMNS, GRAINS, WATER, water_in
 from continuum_sph.validation.soil.setups import in_tank
 from porescale.common.core.constants import GRAVITY
@@ -90,8 +88,9 @@ class WetSlope:
         across = GRAVITY * math.cos(tilt)
         # σ_xx = σ_yy is what shearing along the slope leads to: soil that is not there yet contracts and presses water.
         stress = geostatic(depth - x[:, 1], replace(material, density=self.buoyant), across, 1.0)
-        law: dict[str, Any] = {"bounded": True, "damping": WEIGHTLESS[0]} if self.bounded else {}
-        ground = in_tank(x, stress, size, spacing, material, gravity=GRAVITY, tilt=tilt, sides="none", **law)
+        ground = in_tank(
+            x, stress, size, spacing, material, gravity=GRAVITY, tilt=tilt, sides="none", bounded=self.bounded
+        )
         if not self.seeping:
             along = GRAVITY * math.sin(tilt) * self.buoyant / material.density
             ground.law = replace(ground.law, gravity=(along, -across))
@@ -171,8 +170,8 @@ def seeping_row() -> Measured:
 @VALIDATIONS.row(
     "continuum.soil_slides_wet_with_bounded_damping",
     source="exact: both limits above; damping that is bounded, and pores that swell as the stress of soil takes it to",
-    because="half of what is required: the half of a row at the floor, and what damping bears, 1.8 to 2.8 % of the "
-    "strength of a slip, of which a row of twenty slips",
+    because="half of the 2 % that is required, chosen so that layers whose pores swell by sums over the soil's mean "
+    "velocity fail: 1.5 and 2.3 % off with 20 rows",
     tolerance=0.5 * WITHIN,
     slow=True,
 )

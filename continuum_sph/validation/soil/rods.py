@@ -12,7 +12,6 @@ import numpy as np
 
 from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.soil import Material, Rate
-from continuum_sph.soil.steadying import WEIGHTLESS
 from continuum_sph.validation.soil.setups import in_tank, run_until
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
@@ -39,7 +38,7 @@ def deposit(rows: int, rate: Rate | None = DISCS) -> tuple[Floats, float]:
     material = replace(RODS, rate=rate)
     x = square_lattice((0.0, 0.0), (base, height), spacing)
     stress = geostatic(height - x[:, 1], material)
-    flow = in_tank(x, stress, (0.7, 0.15), spacing, material, damping=WEIGHTLESS[0], bounded=True)
+    flow = in_tank(x, stress, (0.7, 0.15), spacing, material, bounded=True)
     run_until(flow, 0.7)
     return flow.soil.x[: flow.soil.soil].copy(), spacing
 

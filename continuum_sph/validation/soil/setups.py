@@ -7,7 +7,7 @@ import numpy as np
 
 from continuum_sph.builders.parts.soil import placed
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
-from continuum_sph.soil.steadying import steadied
+from continuum_sph.soil.steadying import WEIGHTLESS, steadied
 from continuum_sph.water.smoothing import RATIO, Smoothing
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
@@ -37,11 +37,11 @@ def in_tank(
 
     tilt : rad, of the floor: gravity leans to the right;  floor, sides : "hold" the soil or let it "slip", sides
     "none": endless soil, periodic across;  law : more of `SoilLaw`, with damping and diffusion as in a scene where not
-    given.  Wendland C2, h of ``RATIO`` spacings.
+    given, bounded or not.  Wendland C2, h of ``RATIO`` spacings.
     """
     lean = (gravity * math.sin(tilt), -gravity * math.cos(tilt))
     damping, diffusion = steadied(material, gravity, float(x[:, 1].max()) + 0.5 * spacing, RATIO * spacing)
-    law = {"damping": damping, "diffusion": diffusion} | law
+    law = {"damping": WEIGHTLESS[0] if law.get("bounded") else damping, "diffusion": diffusion} | law
     given = SoilLaw(Smoothing("wendland", RATIO * spacing), spacing, (material,), lean, **law)
     return placed(x, stress, tank, given, floor=floor, sides=sides, skin=SKIN)
 
