@@ -3,6 +3,7 @@
 import io
 import json
 import runpy
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -151,6 +152,13 @@ def test_verify_keeps_rows_that_others_ran(tmp_path: Path) -> None:
     assert "| r.b **fails** |" in (tmp_path / "verify.md").read_text(encoding="utf-8")
     assert json.loads((tmp_path / "verify.json").read_text(encoding="utf-8"))[1]["error"] is None
     assert described((tmp_path / "r.png").read_bytes()) == validation_files.digest([first, fails])
+
+
+def test_a_figure_of_rows_without_a_ratio_is_drawn_without_a_warning() -> None:
+    row = next(row for row in ROWS.values() if row["reference"] == 0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # matplotlib's, of a legend of nothing
+        assert described(validation_files.picture([row])) == validation_files.digest([row])
 
 
 def test_the_page_of_fronts_is_of_the_fronts_that_cases_keep() -> None:

@@ -210,4 +210,5 @@ def _ratios(axes: Axes, rows: Sequence[Stored]) -> None:
     axes.set_xlim(-1.0, 1.0)
     axes.grid(True, axis="x", color="#d8d8d8", lw=0.6)
     axes.set_xlabel("measured / reference - 1, %", fontsize=8.5)
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=7.5, frameon=False)
+    if filled or hollow:  # rows whose reference is 0 have no ratio
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=7.5, frameon=False)
