@@ -39,6 +39,7 @@ def parts_of(it: Scene) -> list[str]:
         "held": it.soil is not None and it.soil.held, "suction": it.soil is not None and it.soil.suction is not None,
         "rate": it.soil is not None and it.soil.rate is not None,
         "softening": it.soil is not None and it.soil.softening is not None,
+        "side walls": it.soil is not None and it.soil.side_walls is not None,
     }  # fmt: skip
     return [name for name, there in chosen.items() if there]
 
@@ -115,6 +116,7 @@ HEAD: Table = {"name": "lid", "side": "lid", "head": 2.5}
 MOIST: Table = {"alpha": 5.0, "n": 3.0, "water_table": 1.0}
 SAND: Table = {"friction_angle": "20 degree", "shear_strain": 0.1, "band_width": 4.0 * SPACING}
 BEADS: Table = {"friction_angle": "33 degree", "inertial_number": 0.3, "grain_diameter": "1 mm"}
+PLATES: Table = {"distance": "0.2 m", "friction_angle": "12 degree"}
 UNSATURATED: Table = {"water": ABOVE, "air": {"density": 20.0, "pressure": 5e4}}
 DISC: Table = {"density": 500.0, "law": "liquid", "disc": [{"x": 0.5, "y": 1.0, "radius": 0.2}]}
 ENERGY_BUDGET: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
@@ -159,5 +161,7 @@ KINDS = SceneKinds([
          "a root where soil yields"),
     SceneKind("strength that softens", "particle", SOIL, in_soil({}, soil={"softening": SAND}), FEWER,
          "a pass over pairs for each average, here one"),
+    SceneKind("side walls", "particle", SOIL, in_soil({}, soil={"side_walls": PLATES}), FEWER,
+         "a root and a stress for each particle"),
 ])  # fmt: skip
 """What `continuum-sph study parts` measures."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import CONDUCTING, Origin
 from continuum_sph.scene.rate import RateSection
+from continuum_sph.scene.side_walls import SideWallsSection
 from continuum_sph.scene.softening import SofteningSection
 from continuum_sph.scene.suction import SuctionSection
 from continuum_sph.scene.water import stacked_top
@@ -191,6 +192,7 @@ class SoilSection(Section):
     suction: SuctionSection | None = None
     rate: RateSection | None = None
     softening: SofteningSection | None = None
+    side_walls: SideWallsSection | None = None
     numerics: SoilNumerics = SoilNumerics()
 
     @classmethod
@@ -256,7 +258,7 @@ class SoilSection(Section):
             repair = f'give soil.permeability_law = "{CONDUCTING}"'
             problem = "is of a law that the scene does not have"
             found.append(Fault("soil.hydraulic_share", self.hydraulic_share, problem, repair=repair))
-        for part in (self.rate, self.softening):
+        for part in (self.rate, self.softening, self.side_walls):
             found += part.faults(self) if part else []
         if self.dilatancy_angle > self.friction_angle:
             found.append(

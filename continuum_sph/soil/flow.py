@@ -17,6 +17,7 @@ from continuum_sph.soil.leapfrog import kick, kick_drift
 from continuum_sph.soil.material import DENSITY, SOFTENED_STRAIN, TENSION, table
 from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.parameters import RULES, SoilLaw
+from continuum_sph.soil.side_walls import brake_beside_walls
 from continuum_sph.soil.softening import average
 from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import Straining, deform
@@ -163,6 +164,8 @@ class SoilFlow:
         soil = self.soil
         drag = self.law.drag if self.time < self.law.settle else 0.0
         acceleration2, speed2 = kick(soil.v, soil.acceleration, 0.5 * step, math.exp(-drag * step))
+        if self.law.side_friction > 0.0:
+            brake_beside_walls(soil.soil, soil.v, soil.stress, soil.density, self.law.side_friction, step)
         self.max_speed = float(speed2) ** 0.5
         limits = self.law.limits(float(acceleration2) ** 0.5, self.sound_rate, self.limit)
         self.rule = int(np.argmin(limits))

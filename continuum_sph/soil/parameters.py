@@ -53,7 +53,7 @@ class SoilLaw:
     tension;  drag : 1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin :
     turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49;  averages : over neighbours, of what
     shears in a step, where soil softens, see `softening`;  level_from : time (s) from which on stress and
-    volume diffuse.
+    volume diffuse;  side_friction : 2 tan δ/W of side walls, 1/m, see `side_walls`.
     """
 
     smoothing: Smoothing
@@ -74,6 +74,7 @@ class SoilLaw:
     courant: float = 0.25
     averages: int = 1
     level_from: float = 0.0
+    side_friction: float = 0.0
 
     def __post_init__(self) -> None:
         """InputError when diffusion at the rate of sound takes more of a zig-zag in a step than there is."""

@@ -174,6 +174,7 @@ GROUND = {
     ),
     "by viscosity": ("", "damping_viscosity = 0.08\nrestless_diffusion = 0.1"),
     "bounded": ("", 'damping_of = "bounded"'),
+    "side walls": ('side_walls = {distance = "30 cm", friction_angle = "15 degree"}', ""),
     "fast, softening": (
         'rate = {friction_angle = "35 degree", inertial_number = 0.3, grain_diameter = 1e-3}\n'
         'softening = {friction_angle = "20 degree", shear_strain = 0.01, band_width = 0.1}',

@@ -290,6 +290,12 @@ def damping_of(section: SoilSection, numerics: NumericsSection, steady: float) -
     return steady if choice.damping_of == "zig-zags" else WEIGHTLESS[0]
 
 
+def side_friction(section: SoilSection) -> float:
+    """2 tan δ/W of a section's side walls, 1/m; 0 without."""
+    walls = section.side_walls
+    return 2.0 * math.tan(walls.friction_angle) / walls.distance if walls else 0.0
+
+
 def soil_law(scene: Scene) -> SoilLaw:
     """Parameters of the soil of a scene."""
     section, numerics = soil_section(scene), scene.numerics
@@ -318,6 +324,7 @@ def soil_law(scene: Scene) -> SoilLaw:
         courant=numerics.courant,
         averages=averages,
         level_from=choice.settle if section.loads_from_none else 0.0,
+        side_friction=side_friction(section),
     )
 
 

@@ -18,6 +18,7 @@ from continuum_sph.builders.reports.soil_report import (
     averaging_seconds,
     report_origin,
     report_rate,
+    report_side_walls,
     report_softening,
     report_strain,
     report_watched,
@@ -92,6 +93,7 @@ def seepage_report(scene: Scene) -> Report:
     pressure = 0.5 * buoyant * scene.gravity * section.height * (1.0 + material_of(section).rest)
     report_softening(out, section, soil_law(scene), pressure)
     report_rate(out, scene, wet=True)
+    report_side_walls(out, section, wet=True)
     if not section.held:
         warn_of_rest(out, section, material_of(section), buoyant * scene.gravity * section.height)
     warn_of_steep_faces(scene, out)

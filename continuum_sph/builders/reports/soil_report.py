@@ -66,6 +66,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
     warn_of_steep_faces(scene, out)
     report_softening(out, section, law, pressure)
     report_rate(out, scene, wet=section.suction is not None)
+    report_side_walls(out, section, wet=section.suction is not None)
     out.heading("steps")
     limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
     step = min(limits)
@@ -208,6 +209,19 @@ def report_rate(out: Report, scene: Scene, *, wet: bool) -> None:
     if wet and viscosity > 0.0:
         stokes = grains * rate.grain_diameter**2 * pace / viscosity
         out.warn(f"[soil.rate] is of dry grains: in water, viscosity can brake them first (Stokes number {stokes:.2g})")
+
+
+def report_side_walls(out: Report, section: SoilSection, *, wet: bool) -> None:
+    """Add to a report how much the side walls of a soil brake it, and warn of ``wet`` soil between them."""
+    walls = section.side_walls
+    if walls is None:
+        return
+    out.heading("side walls")
+    rub = math.tan(walls.friction_angle)
+    alike = 0.5 * walls.distance * math.sin(section.friction_angle) / rub if rub > 0.0 else math.inf
+    out.row("depth at which they brake as its own friction does", alike, "m", "W sin φ/(2 tan δ)")
+    if wet:
+        out.warn("[soil.side_walls] brake the soil alone: water slides along them without friction")
 
 
 def warn_of_heavy_grains(out: Report, section: SoilSection) -> None:

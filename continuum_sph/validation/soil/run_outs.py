@@ -72,9 +72,17 @@ RUBBING_SAND = faster(SAND, 27.0, 43.4, 1.1, 0.8e-3)
 law; I0 = 5 β d/(2 L √(φ cos θ)) as Jop et al. have it, with a solid fraction φ of 0.6."""
 
 
-def let_go(aspect: float, rows: int, repose: float, rate: Rate | None = None) -> tuple[SoilFlow, float, float]:
+PLATES = 2.0 * math.tan(math.radians(10.4)) / 0.045
+"""2 tan δ/W, 1/m, of glass beads on glass (Jop, Forterre & Pouliquen, J. Fluid Mech. 541 (2005) 167) in the channel of
+Lajeunesse et al., taken for 45 mm wide (not looked up)."""
+
+
+def let_go(
+    aspect: float, rows: int, repose: float, rate: Rate | None = None, plates: float | None = None
+) -> tuple[SoilFlow, float, float]:
     """(a column at its release, its base m, its spacing m): ``rows`` to the root of its area, ``aspect`` H/L,
-    ``repose`` degrees, ``rate`` of its friction."""
+    ``repose`` degrees, ``rate`` of its friction;  plates : 2 tan δ/W, 1/m, of side walls beside which damping is
+    bounded, so that nothing else brakes it."""
     height = LARGENESS * math.sqrt(aspect)
     spacing = height / round(rows * math.sqrt(aspect))
     base = spacing * round(height / aspect / spacing)
@@ -82,7 +90,8 @@ def let_go(aspect: float, rows: int, repose: float, rate: Rate | None = None) ->
     material = Material(stiffness, DENSITY, sin_friction=math.tan(math.radians(repose)), rate=rate)
     x = square_lattice((0.0, 0.0), (base, height), spacing)
     tank = (base * (3.0 + 4.0 * aspect), 1.3 * height)
-    return in_tank(x, geostatic(height - x[:, 1], material), tank, spacing, material), base, spacing
+    walls = {} if plates is None else {"side_friction": plates, "bounded": True}
+    return in_tank(x, geostatic(height - x[:, 1], material), tank, spacing, material, **walls), base, spacing
 
 
 def front(x: Floats, spacing: float, from_place: float) -> float:
@@ -95,9 +104,11 @@ def front(x: Floats, spacing: float, from_place: float) -> float:
 
 
 @functools.cache
-def run_out(aspect: float, repose: float, rows: int = ROWS, rate: Rate | None = None) -> float:
-    """(L∞ - L)/L of soil with an angle of repose, degrees, and a ``rate`` of its friction."""
-    flow, base, spacing = let_go(aspect, rows, repose, rate)
+def run_out(
+    aspect: float, repose: float, rows: int = ROWS, rate: Rate | None = None, plates: float | None = None
+) -> float:
+    """(L∞ - L)/L of soil with an angle of repose, degrees, a ``rate`` of its friction and ``plates`` as of `let_go`."""
+    flow, base, spacing = let_go(aspect, rows, repose, rate, plates)
     run_until(flow, SECONDS * math.sqrt(LARGENESS * math.sqrt(aspect) / GRAVITY))
     return front(flow.soil.x[: flow.soil.soil], spacing, 0.5 * base) / base - 1.0
 
@@ -136,3 +147,19 @@ def run_out_row(name: str, grains: Grains, experiments: str) -> None:
 
 run_out_row("sand", SAND, "Lube et al. 2005: sand, sugar, rice in a channel")
 run_out_row("beads", BEADS, "Lajeunesse et al. 2005: glass beads in a channel")
+
+
+@VALIDATIONS.row(
+    "continuum.soil_runs_out_between_plates",
+    source="Lajeunesse et al. 2005: glass beads in a channel, 1.8 a to a = 3, 2.3 a^(2/3) beyond; friction that grows "
+    "from 22° with the rate of shear (Jop et al. 2006), plates 45 mm apart that rub by tan 10.4° (Jop et al. 2005)",
+    because="as of beads whose friction knows neither rate nor plates",
+    tolerance=math.hypot(LOOSE, DEGREE),
+    slow=True,
+)
+def plates_row() -> Measured:
+    """Run-outs (L∞ - L)/L of columns of H/L 0.5, 1, 2 and 4, 40 rows to the root of their area, damping bounded."""
+    return Measured.relative(
+        [BEADS.law(aspect) for aspect in ASPECTS],
+        [run_out(aspect, BEADS.repose, ROWS, RUBBING_BEADS, PLATES) for aspect in ASPECTS],
+    )

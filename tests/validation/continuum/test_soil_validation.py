@@ -17,6 +17,7 @@ from continuum_sph.validation.soil import (
     rods,
     run_outs,
     setups,
+    side_walls,
     slides,
     slopes,
     softening,
@@ -217,6 +218,19 @@ def test_damping_that_goes_with_sound_makes_run_out_depend_on_stiffness():
 def test_damping_without_a_bound_holds_a_slide_back():
     found = slides.acceleration(20, bounded=False) / slides.EXACT
     assert 1.0 - found > 5.0 * tolerance("continuum.soil_slides_on_a_seam")
+
+
+@pytest.mark.slow
+def test_side_walls_that_stand_nearer_are_told_apart():
+    found = side_walls.acceleration(20, 1.15 * side_walls.BRAKE) / side_walls.EXACT
+    assert 1.0 - found > tolerance("continuum.soil_between_side_walls")
+
+
+@pytest.mark.slow
+def test_plates_half_as_far_apart_stop_beads_too_soon():
+    plates = 2.0 * run_outs.PLATES
+    found = run_outs.run_out(1.0, run_outs.BEADS.repose, 20, run_outs.RUBBING_BEADS, plates)
+    assert 1.0 - found / run_outs.BEADS.law(1.0) > 1.2 * tolerance("continuum.soil_runs_out_between_plates")
 
 
 @pytest.mark.slow
