@@ -90,8 +90,11 @@ def let_go(
     material = Material(stiffness, DENSITY, sin_friction=math.tan(math.radians(repose)), rate=rate)
     x = square_lattice((0.0, 0.0), (base, height), spacing)
     tank = (base * (3.0 + 4.0 * aspect), 1.3 * height)
-    walls = {} if plates is None else {"side_friction": plates, "bounded": True}
-    return in_tank(x, geostatic(height - x[:, 1], material), tank, spacing, material, **walls), base, spacing
+    flow = in_tank(
+        x, geostatic(height - x[:, 1], material), tank, spacing, material,
+        side_friction=plates or 0.0, bounded=plates is not None,
+    )  # fmt: skip
+    return flow, base, spacing
 
 
 def front(x: Floats, spacing: float, from_place: float) -> float:
