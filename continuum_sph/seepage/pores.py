@@ -161,7 +161,7 @@ class PoreFlow(Flow):
         find_enclosed(layer.fluid, self.pores, self.enclosed)
         for face in self.faces:
             prescribe_pressure(
-                face.columns, face.pressure, face.heights, self.near(smoothing.kind), layer.x, layer.record,
+                face.columns, face.pressure, self.home, self.near(smoothing.kind), layer.x, layer.record,
                 layer.pressure, *face.point, *face.normal,
             )  # fmt: skip
         if len(self.enclosing):

@@ -265,7 +265,7 @@ def test_drag_is_finite_where_grains_only_just_reach_the_water(law):
 
 
 def test_a_drained_face_holds_a_linear_pressure():
-    columns, heights = np.array([[4, 5, 6]]), np.zeros((1, 3))
+    columns = np.array([[4, 5, 6]])
     x = np.array([[0.0, 0.05], [0.1, 0.05], [0.0, 0.15], [0.1, 0.15], [0.05, -0.05], [0.05, -0.15], [0.05, -0.25]])
     record = np.zeros((7, 8))
     record[:, [X, Y]] = x
@@ -275,7 +275,7 @@ def test_a_drained_face_holds_a_linear_pressure():
     partner = np.array([0, 1, 2, 3, 0, 1, 2, 3], np.int32)
     near = Neighbours(start, split, partner, None, None, WENDLAND, H)
     given = np.full((1, 3), 300.0)
-    prescribe_pressure.py_func(columns, given, heights, near, x, record, pressure, 0.0, 0.0, 0.0, 1.0)
+    prescribe_pressure.py_func(columns, given, x.copy(), near, x, record, pressure, 0.0, 0.0, 0.0, 1.0)
     np.testing.assert_allclose(pressure[4:6], 300.0 + 50.0 * x[4:6, 1], rtol=10 * eps)
     assert pressure[6] == 300.0  # no water near
     np.testing.assert_allclose(record[4:6, VY], 0.2, rtol=10 * eps)
