@@ -135,14 +135,16 @@ class Scene(SceneBase):
             faults += self.soil.suction.faults(self) if self.soil.suction else []
         elif not self.water.column and not self.reservoir:  # which is refused below
             faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
-        faults += reservoir_faults(self.reservoir, self.soil, self.inner, spacing)
+        uneven = {"tank.width", "tank.height"} & {it.key for it in faults}  # said already
+        inner = (tank.width, tank.height) if uneven else self.inner
+        faults += reservoir_faults(self.reservoir, self.soil, inner, spacing)
         if self.soil is not None:
             faults += self._wet_soil(self.soil)
-        faults += face_faults(self.face, self.soil, tank.lid, self.inner, spacing)
+        faults += face_faults(self.face, self.soil, tank.lid, inner, spacing)
         if self.face and self.gravity == 0.0:
             faults.append(Fault("face", "given", "has a head, which needs gravity", repair="raise gravity"))
         if self.pile is not None:
-            faults += self.pile.faults(*self.inner, spacing)
+            faults += self.pile.faults(*inner, spacing)
             if self.soil is None:
                 faults.append(Fault("pile", "given", "needs soil beside it", repair="add [soil]"))
         if not self.has_water and (self.soil is None or self.soil.suction is None):  # which refuses them itself
