@@ -12,7 +12,9 @@ from porescale.common.api.report import Report
 def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
     if scene.soil is None:
-        return water_report(scene)
+        out = water_report(scene)
+        warn_without_effect(scene, out)
+        return out
     if scene.soil.suction is not None:
         out = suction_report(scene)
     else:

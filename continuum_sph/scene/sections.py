@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pydantic
+from numpy.typing import NDArray
 
 from continuum_sph.scene.air import AirSection
 from continuum_sph.scene.bounds import MOST, WEAKEST, WHOLE, spacings
@@ -23,8 +24,9 @@ from continuum_sph.scene.water import WaterSection
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.dividing import dividing
 from porescale.common.core.errors import Fault
+from porescale.common.core.types import Floats
 from porescale.common.schema.look import LookSection
-from porescale.common.schema.names import name_faults
+from porescale.common.schema.names import name_faults, names_of
 from porescale.common.schema.scene import SceneBase
 from porescale.common.schema.sections import Refused, quantity
 
@@ -100,6 +102,17 @@ class Scene(SceneBase):
         spacing = self.numerics.spacing
         return spacings(self.tank.width, spacing) * spacing, spacings(self.tank.height, spacing) * spacing
 
+    def open_at(self, points: Floats) -> NDArray[np.bool_]:
+        """At which of ``points`` (n, 2) m, none of them to the left of the tank, neither water nor ground nor a side of
+        the tank is."""
+        taken = points[:, 0] > self.inner[0]
+        for column in self.water.column:
+            low, high = column.reach(points[:, 0])
+            taken |= (low < points[:, 1]) & (points[:, 1] < high)
+        for body in self.soil.body if self.soil is not None else ():
+            taken |= body.holds(points)
+        return ~taken
+
     @pydantic.model_validator(mode="after")
     def _tension(self) -> "Scene":
         """Says what water does under negative pressure where that is left out.
@@ -122,14 +135,16 @@ class Scene(SceneBase):
             faults += self.soil.suction.faults(self) if self.soil.suction else []
         elif not self.water.column and not self.reservoir:  # which is refused below
             faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
-        faults += reservoir_faults(self.reservoir, self.soil, self.inner, spacing)
+        uneven = {"tank.width", "tank.height"} & {it.key for it in faults}  # said already
+        inner = (tank.width, tank.height) if uneven else self.inner
+        faults += reservoir_faults(self.reservoir, self.soil, inner, spacing)
         if self.soil is not None:
             faults += self._wet_soil(self.soil)
-        faults += face_faults(self.face, self.soil, tank.lid, self.inner, spacing)
+        faults += face_faults(self.face, self.soil, tank.lid, inner, spacing)
         if self.face and self.gravity == 0.0:
             faults.append(Fault("face", "given", "has a head, which needs gravity", repair="raise gravity"))
         if self.pile is not None:
-            faults += self.pile.faults(*self.inner, spacing)
+            faults += self.pile.faults(*inner, spacing)
             if self.soil is None:
                 faults.append(Fault("pile", "given", "needs soil beside it", repair="add [soil]"))
         if not self.has_water and (self.soil is None or self.soil.suction is None):  # which refuses them itself
@@ -169,7 +184,7 @@ class Scene(SceneBase):
                           f"<= {finest:g}")
                 )  # fmt: skip
         faults += self._overlapping() + self._unseen() + look_faults(self)
-        faults += self._released()
+        faults += self._released() + self._pushed()
         faults += self._misplaced()
         if 0.0 < self.gravity < WEAKEST:
             faults.append(Fault("gravity", self.gravity, "is too weak to move water", "m/s^2", f"0 or >= {WEAKEST:g}"))
@@ -215,9 +230,22 @@ class Scene(SceneBase):
                           repair='use "hydrostatic"')]  # fmt: skip
         return []
 
+    def _pushed(self) -> list[Fault]:
+        """A right face that is to start with a speed, where no column has a right face in the open."""
+        columns, spacing = self.water.column, self.numerics.spacing
+        if self.water.push == "none" or (self.soil is None and not columns):  # the latter is refused itself
+            return []
+        for it in columns:
+            y = it.bottom + (np.arange(spacings(it.height, spacing)) + 0.5) * spacing
+            if self.open_at(np.column_stack((np.full(len(y), it.left + it.width + 0.5 * spacing), y))).any():
+                return []
+        problem = "needs a right face of water in the open, and none has no side, ground or water before it"
+        return [Fault("water.push", self.water.push, problem, repair="take it out")]
+
     def _unseen(self) -> list[Fault]:
         """Probes and levels that lie outside of the tank, or whose names make no columns."""
         found = name_faults("probe", self.probe, "probe") + name_faults("level", self.level, "level")
+        found += self._shared_columns()
         width, height = self.tank.width, self.tank.height
         for k, it in enumerate(self.probe):
             if it.x > width or it.y > height:
@@ -228,6 +256,17 @@ class Scene(SceneBase):
             if level.x > width:
                 found.append(Fault(f"level[{k}].x", level.x, "lies outside of the tank", "m", f"<= {width:g}"))
         return found
+
+    def _shared_columns(self) -> list[Fault]:
+        """Probes and levels one of whose columns another has, too: one of both would be lost."""
+        probes = list(zip(names_of(self.probe, "probe"), self.probe, strict=True))
+        levels = names_of(self.level, "level") if self.soil is not None else []
+        means = {f"{name} mean" for name, it in probes if it.width is not None}
+        depths = {f"{name} open depth" for name in levels}
+        shared = [("probe", k, name) for k, (name, it) in enumerate(probes) if it.width is None and name in means]
+        shared += [("level", k, name) for k, name in enumerate(levels) if name in depths]
+        problem = "makes a column that another one has"
+        return [Fault(f"{key}[{k}].name", name, problem, repair="rename it") for key, k, name in shared]
 
     def _wet_soil(self, soil: SoilSection) -> list[Fault]:
         """Keys of the soil that need water, or exclude each other."""

@@ -42,7 +42,7 @@ class WaterSection(Section):
 
     pressure : at the start, "hydrostatic", that of fluids just let go ("released"), or "none"
     (density ρ0 everywhere, in pores, too, as in Maeda & Sakai 2004);  push : "face" gives the particles of the right
-    face √(2g(H-y)) to the right, as in their figs 6 and 7.
+    face, where it is in the open, √(2g(H-y)) to the right, H the surface of all water on it, as in their figs 6 and 7.
     """
 
     density: float = quantity("kg/m^3", 1000.0, ge=1e-2, le=1e5, help="density under the pressure of the air")

@@ -246,8 +246,8 @@ def water_particles(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
             rho = np.full(len(x), tait.density)
         v = np.zeros_like(x)
         if water.push == "face":
-            face = x[:, 0] > x[:, 0].max() - 0.5 * spacing
-            v[face, 0] = np.sqrt(2.0 * scene.gravity * (top - x[face, 1]))
+            face = (x[:, 0] > x[:, 0].max() - 0.5 * spacing) & scene.open_at(x + np.array((spacing, 0.0)))
+            v[face, 0] = np.sqrt(2.0 * scene.gravity * depth[face])
         positions.append(x)
         velocities.append(v)
         densities.append(rho)

@@ -119,12 +119,7 @@ def _warn(scene: Scene, mach: float, out: Report) -> None:
             f"Mach number {mach:.2g}: the water compresses by more than 1 %; "
             f"raise water.sound_speed to {scene.fall_speed / MACH_WARNED:.4g} m/s or leave it out"
         )
-    if scene.soil and scene.numerics.gradient == "corrected":
-        out.warn(
-            'numerics.gradient = "corrected" changes nothing with ground in the water: among grains gradients are '
-            "corrected, in the open plain; leave it out"
-        )
-    elif _free(scene):
+    if _free(scene) and not (scene.soil and scene.numerics.gradient == "corrected"):  # which has no effect there
         _warn_of_volume(scene.numerics, out)
     if scene.numerics.kernel == "cubic" and scene.numerics.smoothing_ratio < 1.2:
         out.warn("cubic spline with few partners: pressures are noisy and particles pair up; wendland at 1.3 does not")

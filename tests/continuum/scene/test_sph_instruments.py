@@ -18,6 +18,7 @@ from continuum_sph.builders.parts.mixture import PoreInstruments
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.tanks import tank_scene
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import square_lattice
 from porescale.common.record.drive import drive
@@ -230,3 +231,24 @@ def test_columns_of_water_that_share_room_are_refused():
     )
     with pytest.raises(InputError, match=r"^water\.column\[1\]: overlaps water\.column\[0\] by "):
         validate(Scene, {**SCENE, "water": {**water, "column": [column, beside]}})
+
+
+@pytest.mark.parametrize(
+    ("key", "sections"),
+    [
+        ("level", [{"name": "a", "x": 0.2}, {"name": "a open depth", "x": 0.6}]),
+        ("probe", [{"name": "a mean", "x": 0.2, "y": 0.2},
+                   {"name": "a", "x": 0.5, "y": 0.2, "width": 0.2, "height": 0.2}]),
+    ],
+)  # fmt: skip
+def test_names_that_make_one_column_of_two_are_refused(key, sections):
+    """The column of one of them was lost."""
+    ground = {"body": [{"outline": [[0, 0], [1, 0], [1, 0.2], [0, 0.2]]}], "held": True}
+    column = [{"width": 1.0, "height": 0.4, "bottom": 0.2}]
+
+    def made(of, **more):
+        return tank_scene(1.0, 0.8, SPACING, soil=ground, water={"column": column}, **{key: of}, **more)
+
+    with pytest.raises(InputError, match="makes a column that another one has; rename it"):
+        made(sections)
+    made([it | {"name": f"{it['name']} b"} for it in sections])

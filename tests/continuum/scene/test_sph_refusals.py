@@ -135,6 +135,17 @@ def test_a_spacing_too_large_for_a_side_is_what_is_wrong_with_its_face():
         scene(**full, face=[face | {"start": 0.3}], numerics={"spacing": 0.25})
 
 
+def test_a_tank_of_no_whole_spacings_is_the_only_fault_of_what_stands_at_its_side():
+    """A strip that ends at the side, 1 m, was outside of the 0.99 m that whole spacings make, too."""
+    strip = {"left": 0.7, "right": 1.0, "level": 0.3}
+    with pytest.raises(InputError) as refused:
+        scene(numerics={"spacing": 0.03}, reservoir=[strip])
+    keys = [line.split(" = ")[0] for line in str(refused.value).splitlines()]
+    assert keys == ["tank.width", "tank.height"]
+    with pytest.raises(InputError, match=r"^reservoir\[0\]\.right = 1\.2 m"):  # as it is where the tank has them
+        scene(reservoir=[strip | {"right": 1.2}])
+
+
 WET = {"water": WATER, "soil": {"porosity": 0.4, "permeability": 0.01}}
 IMAGES = {"tank": {"width": 1.0, "height": 0.5, "wall_particles": "images"}}
 BUBBLE = {

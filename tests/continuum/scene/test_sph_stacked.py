@@ -6,6 +6,7 @@ import pytest
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.soil.stress import YY
 from continuum_sph.validation.tanks import tank_scene
+from porescale.common.core.errors import InputError
 
 WIDE, GROUND, LEVEL, SPACING = 0.6, 0.5, 0.9, 0.05  # m
 SOIL = {"density": 1500.0, "porosity": 0.4, "body": [{"outline": [[0, 0], [WIDE, 0], [WIDE, GROUND], [0, GROUND]]}]}
@@ -104,3 +105,44 @@ def test_water_without_pressure_has_none_in_pores(full):
 
     assert (starting("none") == 1000.0).all()
     assert (starting("hydrostatic") > 1000.0).all()  # the check that must fail
+
+
+def pushed(columns, width=1.2, **more):
+    """Speeds of water whose right face is pushed, (n, 3): place, and speed to the right; columns: left, bottom, width,
+    height (m) of each."""
+    named = [dict(zip(("left", "bottom", "width", "height"), it, strict=True)) for it in columns]
+    water = {"sound_speed": 60.0, "push": "face", "column": named}
+    flow = Simulation(tank_scene(width, 1.2, SPACING, lid=False, water=water, **more)).flow
+    layer = getattr(flow, "water", flow).layer
+    rows = np.column_stack((layer.x, layer.v[:, 0]))[: layer.fluid].round(9)
+    return rows[np.lexsort((rows[:, 0], rows[:, 1]))]
+
+
+@pytest.mark.parametrize(
+    "pieces",
+    [
+        [(0.0, 0.0, 0.3, 0.8), (0.3, 0.0, 0.3, 0.8)],
+        [(0.3, 0.0, 0.3, 0.8), (0.0, 0.0, 0.3, 0.8)],
+        [(0.0, 0.0, 0.6, 0.4), (0.0, 0.4, 0.6, 0.4)],
+    ],
+)
+def test_a_face_is_pushed_as_one_whatever_its_water_is_laid_in(pieces):
+    """Each piece had a right face of its own, also amid the water, and a height of its own."""
+    assert np.array_equal(pushed(pieces), pushed([(0.0, 0.0, 0.6, 0.8)]))
+    assert pushed([(0.0, 0.0, 0.6, 0.8)])[:, 2].max() == pytest.approx(np.sqrt(2.0 * 9.81 * 0.775))
+
+
+def test_a_face_is_pushed_where_it_is_in_the_open():
+    beside = pushed([(0.0, 0.0, 0.6, 0.8), (0.6, 0.0, 0.2, 0.3)])
+    assert set(beside[beside[:, 2] > 0.0, 0]) == {0.575, 0.775}
+    assert not beside[(beside[:, 0] == 0.575) & (beside[:, 1] < 0.3), 2].any()
+
+
+@pytest.mark.parametrize("more", [{"width": 0.6}, {"soil": {"body": [{"outline": [[0.6, 0], [1.2, 0], [0.6, 0.8]]}]}}])
+def test_a_face_before_a_side_or_ground_is_not_pushed_into_it(more):
+    if "soil" in more:  # a slope, which the upper part of the face looks over
+        rows = pushed([(0.0, 0.0, 0.6, 1.0)], **more)
+        assert rows[rows[:, 2] > 0.0, 1].min() > 0.7
+        more = {"soil": {"body": [{"outline": [[0.6, 0], [1.2, 0], [1.2, 1.0], [0.6, 1.0]]}]}}
+    with pytest.raises(InputError, match=r"water\.push = 'face': needs a right face of water in the open"):
+        pushed([(0.0, 0.0, 0.6, 1.0)], **more)

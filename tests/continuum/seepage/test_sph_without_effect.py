@@ -1,4 +1,4 @@
-"""Keys of numerics that change nothing in a scene with soil are said, and change nothing."""
+"""Keys that change nothing in a scene are said, and change nothing."""
 
 import numpy as np
 import pytest
@@ -53,3 +53,40 @@ def test_what_has_no_effect_is_said_and_nothing_else(kind):
 def test_nothing_is_said_of_defaults():
     assert set(OTHER) == set(OF_WATER)
     assert told("wet", gradient="plain") == told("dry", artificial_viscosity=0.02) == []
+
+
+def dry(tank=None, **soil):
+    """A bank of dry soil."""
+    table = {"width": 1.0, "height": 0.6, "lid": False} | (tank or {})
+    corners = [[0.5, 0], [1, 0], [1, 0.3], [0.5, 0.3]]
+    return tank_scene(1.0, 0.6, 0.05, tank=table, soil={"body": [{"outline": corners}]} | soil)
+
+
+@pytest.mark.parametrize(
+    ("made", "key"),
+    [
+        (dry({"walls": "stick"}), "tank.walls"),
+        (dry({"wall_particles": "images"}), "tank.wall_particles"),
+        (dry(strength="peak"), "soil.strength"),
+    ],
+)
+def test_dry_soil_has_neither_walls_of_water_nor_strengths_of_a_file_that_is_not_there(made, key):
+    assert [it.split(" = ")[0] for it in report(made).warnings if "has no effect" in it] == [key]
+    soils = [Simulation(it).snapshot().clouds["particles"].data for it in (made, dry())]
+    assert all(np.array_equal(soils[0][name], soils[1][name]) for name in soils[0])
+
+
+@pytest.mark.parametrize("law", ["liquid", "adiabatic", "printed"])
+@pytest.mark.parametrize(("key", "value"), [("sound_speed", 80.0), ("pressure", 5e4), ("exponent", 2.0)])
+def test_what_a_second_fluid_does_not_have_is_said(law, key, value):
+    """A sweep over the pressure of a liquid, or the speed of sound of a gas, showed no error and changed nothing."""
+    made = []
+    for more in ({}, {key: value}):
+        fluid = {"law": law, "density": 800.0, "disc": [{"x": 0.5, "y": 0.3, "radius": 0.15}]} | more
+        water = {"column": [{"width": 1.0, "height": 0.5}]}
+        made.append(tank_scene(1.0, 0.6, 0.05, water=water, inclusion=fluid))
+    said = [it.split(" = ")[0] for it in report(made[1]).warnings if "has no effect" in it]
+    layers = [Simulation(it).flow.layer for it in made]
+    same = np.array_equal(layers[0].density, layers[1].density)
+    assert said == ([f"inclusion.{key}"] if same else [])
+    assert not any("has no effect" in it for it in report(made[0]).warnings)
