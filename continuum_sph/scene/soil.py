@@ -150,7 +150,7 @@ class SoilSection(Section):
         default="critical", description="which angles of the material file hold"
     )
     origin: Origin | None = None
-    density: float = quantity("kg/m^3", 1590.0, ge=1, le=1e5, help="of grains per whole volume: (1 - n) times theirs")
+    density: float = quantity("kg/m^3", 1590.0, ge=1, le=1e5, help="mass of grains per whole volume: 1 - n of theirs")
     porosity: float = quantity("", 0.4, ge=0, le=0.99, help="porosity at the start")
     stiffness: float = quantity("Pa", 2e6, ge=1, le=1e12, help="Young's modulus at the reference stress")
     reference: float = quantity("Pa", 1e5, ge=1e-3, le=1e12, help="mean stress at which it is given")

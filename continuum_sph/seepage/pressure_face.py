@@ -158,6 +158,18 @@ def prescribe_pressure(columns, given, home, near, x, record, pressure, ox, oy, 
 
 
 @parallel_kernel
+def flux_before(rows, near, x, record, nx, ny, flux):
+    """Overwrites ``flux`` (l,) m/s with the mean flux along (nx, ny) of the water before the wall particles ``rows``
+    (l,), 0 where there is none.
+
+    The rest: of `prescribe_pressure`.
+    """
+    for number in prange(rows.shape[0]):
+        weight, _, _, _, _, ux, uy = seen_behind(row(rows[number]), 0.0, 0.0, near, x, record, nx, ny)
+        flux[number] = (ux * nx + uy * ny) / weight if weight > 0.0 else 0.0
+
+
+@parallel_kernel
 def continue_behind(rows, near, x, v, record, pressure, gx, gy):
     """Overwrites pressure of the wall particles ``rows`` (l,) in ``record`` and ``pressure`` (n,) Pa with that of the
     water before them continued, of either sign.

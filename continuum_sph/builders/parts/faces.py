@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.face import FaceSection
 from continuum_sph.seepage import PoreFlow, PressureFace
-from continuum_sph.seepage.pressure_face import in_columns
+from continuum_sph.seepage.pressure_face import flux_before, in_columns
 from continuum_sph.water.state import VX, VY
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
@@ -69,6 +69,20 @@ class FacePart(Part):
         self.rising = [(face, it) for face, it in zip(flow.faces, sections, strict=True) if len(it.table) > 1]
         self.faces, self.flow, self.spacing = flow.faces, flow, spacing
         self.outer = [face.columns[self._depth(face, flow.home) < spacing] for face in self.faces]
+        taken = np.concatenate([face.columns.ravel() for face in self.faces])
+        walls = np.setdiff1d(np.arange(flow.layer.fluid, flow.layer.count), taken)
+        self.past = [self._past(it.axis, face, walls) for it, face in zip(sections, self.faces, strict=True)]
+
+    def _past(self, axis: int, face: PressureFace, walls: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Those of ``walls`` (k,) that go on in the row of a ``face`` along its ``axis`` where it ends amid a side, as
+        far as a kernel reaches: what passes an end spreads along the side, beside walls that know of no flow."""
+        home, reach = self.flow.home, self.flow.law.smoothing.support
+        depth = (np.array(face.point) - home[walls]) @ np.array(face.normal)
+        along, own = home[walls, axis], home[face.columns[:, 0], axis]
+        inside = (along > self.flow.lower[axis]) & (along < self.flow.upper[axis])
+        off = np.maximum(own.min() - along, along - own.max())
+        found: NDArray[np.int64] = walls[inside & (depth > 0.0) & (depth < self.spacing) & (off < reach)]
+        return found
 
     @staticmethod
     def _depth(face: PressureFace, x: Floats) -> Floats:
@@ -103,8 +117,11 @@ class FacePart(Part):
 
         NAME flow in (m2/s) : flow of water through the face into the tank; less than zero where it leaves
         """
-        record = self.flow.layer.record
-        return {
-            f"{name} flow in (m2/s)": float((record[rows, VX : VY + 1] @ np.array(face.normal)).sum() * self.spacing)
-            for name, face, rows in zip(self.names, self.faces, self.outer, strict=True)
-        }
+        layer, found = self.flow.layer, {}
+        near = self.flow.near(self.flow.law.smoothing.kind)
+        for name, face, rows, past in zip(self.names, self.faces, self.outer, self.past, strict=True):
+            beside = np.zeros(len(past))
+            flux_before(past, near, layer.x, layer.record, *face.normal, beside)
+            own = layer.record[rows, VX : VY + 1] @ np.array(face.normal)
+            found[f"{name} flow in (m2/s)"] = float((own.sum() + beside.sum()) * self.spacing)
+        return found

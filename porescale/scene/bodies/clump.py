@@ -20,7 +20,7 @@ class Clump(Section):
         "m", ge=-1e3, le=1e3, help="discs of the body, [x, y, radius] from its point"
     )
     at: tuple[tuple[float, float], ...] = quantity("m", **PLACE, help="places of the points of the bodies")
-    angle: tuple[float, ...] = quantity("rad", (), ge=-1e3, le=1e3, help="by how much each is turned about its point")
+    angle: tuple[float, ...] = quantity("rad", (), ge=-1e3, le=1e3, help="angle of each, about its point")
     density: float | None = quantity("kg/m^3", None, ge=1e-3, le=1e5, help="density (default: of its material)")
     mass: float | None = quantity("kg/m", None, gt=0, le=1e9, help="mass per metre of depth, by hand")
     inertia: float | None = quantity("kg m", None, gt=0, le=1e9, help="moment of inertia per metre, by hand")

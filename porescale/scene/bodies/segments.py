@@ -27,7 +27,7 @@ class Framed(Section):
     spin: float = quantity("rad/s", 0.0, ge=-1e7, le=1e7, help="angular velocity at the start, counter-clockwise")
     held: bool = pydantic.Field(False, description="stands still whatever pushes it; [[control]] moves it otherwise")
     at: Points = quantity("m", (), **PLACE, help="a copy at each of these points (default: one, as it is given)")
-    angle: tuple[float, ...] = quantity("rad", (), ge=-1e3, le=1e3, help="by how much each is turned about its point")
+    angle: tuple[float, ...] = quantity("rad", (), ge=-1e3, le=1e3, help="angle of each, about its point")
 
     def _faults(self) -> list[Fault]:
         """What is wrong with what all have."""

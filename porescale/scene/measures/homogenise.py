@@ -27,7 +27,7 @@ class Homogenise(Section):
     rates: tuple[float, ...] = quantity(
         "", (), ge=1e-3, le=1, help="inertial numbers at which friction is measured in shear"
     )
-    ratio_error: float = quantity("", 0.01, ge=0, le=0.5, help="by how much grains.hydraulic_radius_ratio may be off")
+    ratio_error: float = quantity("", 0.01, ge=0, le=0.5, help="most that grains.hydraulic_radius_ratio may be off by")
 
     def _faults(self) -> list[Fault]:
         if self.rates and len({f"{rate:g}" for rate in self.rates}) < max(LEAST, len(self.rates)):
