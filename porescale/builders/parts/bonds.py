@@ -98,7 +98,9 @@ class BondsPart(Part):
                 own *= section.factor if section.tension is None else section.tension / float(np.mean(own[own > 0.0]))
                 self._made(before)
                 continue
-            nothing = "nothing touches that is not bonded already" if before else "nothing touches"  # as all of a rock is
+            nothing = "nothing touches"
+            if before:  # as of a rock, whose pieces are bonded first
+                nothing += " that is not bonded already"
             if section.at == 0.0:
                 repair = f"{'leave it out' if before else 'place bodies closer'}, or bond later"
                 problem = f"{nothing}, so there is nothing to bond"
