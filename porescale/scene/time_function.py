@@ -42,11 +42,13 @@ class TimeFunction(Section):
             return [Fault("values", len(self.values), "are not as many as times", "", str(len(self.times)))]
         if any(not later > earlier for earlier, later in zip(self.times, self.times[1:], strict=False)):
             return [Fault("times", None, "must ascend", "s", repair="sort the pairs by time")]
-        if self.times and (self.mean or self.amplitude or self.frequency):
+        if self.times and (self.mean or self.amplitude or self.frequency or self.phase):
             return [Fault("times", None, "a course is a table or a sine", "s", repair="leave one of them out")]
         if (self.amplitude != 0.0) != (self.frequency != 0.0):
             key = "frequency" if self.amplitude else "amplitude"
             return [Fault(key, 0, "is needed for a sine", repair="give amplitude and frequency")]
+        if self.phase and not self.amplitude:
+            return [Fault("phase", self.phase, "is of a sine", "rad", repair="give amplitude and frequency, too")]
         return []
 
     @property

@@ -176,6 +176,15 @@ def test_rock_is_made_of_the_packing_and_bears_a_pull(kind):
     assert 2e-4 * 1e6 < row["stress (Pa)"] < 2e-4 * 1e8
 
 
+def test_bonds_of_what_a_rock_has_bonded_are_refused():
+    with pytest.raises(InputError) as caught:  # it touches, so that bodies closer would not help
+        build(rock("discs", strain=None).with_({"bonds": [{}]}))
+    assert str(caught.value) == (
+        "bonds[0].at = 0.0 s: nothing touches that is not bonded already, so there is nothing to bond; "
+        "leave it out, or bond later"
+    )
+
+
 def test_rock_without_a_pressed_packing_is_refused():
     packing = {**ROCK["grains"]["packing"], "pressure": None, "settle": False, "packing_fraction": 0.5}
     with pytest.raises(InputError) as caught:

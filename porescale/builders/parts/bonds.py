@@ -96,11 +96,16 @@ class BondsPart(Part):
             if count:
                 own = self.grains.bonds.back[before:]  # type: ignore[union-attr]
                 own *= section.factor if section.tension is None else section.tension / float(np.mean(own[own > 0.0]))
-            elif section.at == 0.0:
-                problem, repair = "nothing touches, so there is nothing to bond", "bond later, or place bodies closer"
+                self._made(before)
+                continue
+            nothing = "nothing touches"
+            if before:  # as of a rock, whose pieces are bonded first
+                nothing += " that is not bonded already"
+            if section.at == 0.0:
+                repair = f"{'leave it out' if before else 'place bodies closer'}, or bond later"
+                problem = f"{nothing}, so there is nothing to bond"
                 raise InputError(Fault(f"{key}.at", section.at, problem, "s", repair=repair))
-            else:
-                warn(f"t = {time:.6g} s: {key} makes no bond, as nothing touches")
+            warn(f"t = {time:.6g} s: {key} makes no bond, as {nothing}")
             self._made(before)
 
     def _made(self, first: int) -> None:

@@ -18,6 +18,7 @@ from porescale.common.record import open_run as record
 from porescale.common.record.columns import TIME, WIDE, Columns, missing
 from porescale.common.record.model import Snapshot
 from porescale.common.record.read_card import read_card
+from porescale.common.record.series import WORDS
 from porescale.common.record.vtkhdf import Readers
 
 if TYPE_CHECKING:
@@ -122,7 +123,8 @@ class Run(record.Run):
     def table(self, name: str) -> Columns:
         """Columns of <name>.csv, such as "loads" or "probes"; InputError with the nearest name where there is none."""
         if not (self.folder / f"{name}.csv").is_file():
-            raise missing("table", name, self.tables, "the run folder")
+            known = [path.stem for path in self.folder.glob("[!.]*.csv")]  # breaks.csv, too, which has names of bodies
+            raise missing("table", name, known, "the run folder")
         return super().table(name)
 
     def xarray(self, arrays: Sequence[str] | None = None, *, of: str | None = None) -> xarray.Dataset:
@@ -363,4 +365,4 @@ def _over_time(path: Path) -> bool:
         [float(cell) for cell in row.split(",")] if row.strip() else None
     except (OSError, ValueError):
         return False
-    return head.startswith(TIME)
+    return head.startswith(TIME) and not WORDS.intersection(head.rstrip().split(","))  # which a table without rows has

@@ -63,6 +63,9 @@ def _below(key: Key, above: Key) -> bool:
     return len(key) > len(above) and key[: len(above)] == above
 
 
+PLAIN = {"int_type": "is not a whole number", "int_parsing": "is not a whole number",
+         "int_from_float": "is not a whole number", "string_too_short": "is empty"}  # fmt: skip
+"""Problems in other words than pydantic's, which speak of validation and parsing."""
 LONGEST_INDEX = 9
 """Digits: what is longer counts nothing, and is a name."""
 
@@ -127,16 +130,27 @@ def _fault(
         return Fault(name, None, "is not a list", repair=f"write [[{name}]] and its keys below")
     if kind in ("tuple_type", "list_type"):
         return Fault(name, shown, "is not a list", unit, allowed, "write it as [ … ]")
+    if kind in ("too_short", "too_long"):
+        few = kind == "too_short"
+        bound = context["min_length" if few else "max_length"]
+        belong = f"at {'least' if few else 'most'} {bound} {'belongs' if bound == 1 else 'belong'}"
+        problem = f"has {context['actual_length']} entries where {belong}"
+        return Fault(name, value if isinstance(value, list) else shown, problem, unit, allowed, _give(help))
     for sign, bound in ((">", "gt"), (">=", "ge"), ("<", "lt"), ("<=", "le")):
         if bound in context:
-            repair = f"give the {help} in this range" if help else ""
+            repair = f"{_give(help)} in this range" if help else ""
             return Fault(name, shown, "is out of range", unit, f"{sign} {context[bound]}", repair)
     problem = str(item["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
     problem = problem[:1].lower() + problem[1:]
     given = value if isinstance(value, list | dict) else shown
-    return Fault(
-        name, given, problem.replace("input should be", "should be"), unit, allowed, f"give the {help}" if help else ""
-    )
+    problem = PLAIN.get(kind, problem.replace("input should be", "should be"))
+    return Fault(name, given, problem, unit, allowed, _give(help))
+
+
+def _give(help: str) -> str:
+    """What to do about a wrong value, by what the field's help says that it is."""
+    asks = help.partition(" ")[0] in ("which", "how", "what", "whether")
+    return f"give {'' if asks else 'the '}{help}" if help else ""
 
 
 def _suggestion(name: str, owners: Sequence[type[BaseModel]], root: type[BaseModel]) -> str:

@@ -11,12 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
-from porescale.dem.contact.budget import add_contact_losses, add_release_losses, has_budget
+from porescale.dem.contact.budget import add_contact_losses, add_release_losses
 from porescale.dem.contact.law import (
     Relative,
     contact,
     force_components,
-    has_history,
     load_history,
     moments,
     row_numbers,
@@ -120,10 +119,9 @@ def row_between(i, j, shared, law, material):
 
 @inline
 def leave_pair(i, j, k, dx, dy, d, history, law, dt, cell):
-    """Add to the budget, if any, what the springs of a pair (dx, dy) m apart still held that touched a step ago."""
-    if has_budget(d.budget) and has_history(history, k, law):
-        du, dv = relative_velocity(i, j, dx, dy, d.velocity, cell)
-        p = row_between(i, j, row_numbers(law.table[0, 0], law), law, d.material)
-        overlap = d.radius[i] + d.radius[j] - np.sqrt(dx * dx + dy * dy)
-        way = contact_kinematics(dx, dy, du, dv, d.spin[i], d.spin[j], d.radius[i], d.radius[j])
-        release_contact(i, k, overlap, way, p, history, d.budget, law, dt)
+    """Add to the budget, which there is, what the springs of a pair (dx, dy) m apart hold that touched a step ago."""
+    du, dv = relative_velocity(i, j, dx, dy, d.velocity, cell)
+    p = row_between(i, j, row_numbers(law.table[0, 0], law), law, d.material)
+    overlap = d.radius[i] + d.radius[j] - np.sqrt(dx * dx + dy * dy)
+    way = contact_kinematics(dx, dy, du, dv, d.spin[i], d.spin[j], d.radius[i], d.radius[j])
+    release_contact(i, k, overlap, way, p, history, d.budget, law, dt)

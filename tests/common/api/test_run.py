@@ -113,8 +113,11 @@ def test_tables_are_mappings_that_name_the_nearest_column(run):
         run.series["frnt (m)"]
     with pytest.raises(InputError, match=r"table = 'load': is not in the run folder; did you mean 'loads'\?"):
         run.table("load")
-    (run.folder / "breaks.csv").write_text("time (s),body ()\n0.1,grain 3\n")  # not numbers
-    assert run.tables == ["series", "loads"]
+    for row in ("0.1,grain 3\n", ""):  # not numbers, also where nothing broke
+        (run.folder / "breaks.csv").write_text(f"time (s),body ()\n{row}")
+        assert run.tables == ["series", "loads"]
+    with pytest.raises(InputError, match=r"table = 'break': is not in the run folder; did you mean 'breaks'\?"):
+        run.table("break")
 
 
 def test_a_table_with_names_of_bodies_is_read(run):

@@ -61,6 +61,23 @@ def test_python_has_the_messages_of_files_every_fault_at_once() -> None:
     ]
 
 
+def test_lists_of_another_length_and_numbers_that_are_not_whole_are_refused_in_plain_words() -> None:
+    class Picture(Section):
+        limits: tuple[float, float] = (0.0, 1.0)
+        fields: tuple[str, ...] = pydantic.Field(("speed",), min_length=1, description="which fields")
+        size: int = pydantic.Field(10, description="long side")
+        number: int = pydantic.Field(1, description="how many there are")
+        name: str = pydantic.Field("a", min_length=1)
+
+    assert refusals(lambda: Picture(limits=[0, 1, 2], fields=[], size="x", number=1.5, name="")) == [
+        "limits = [0, 1, 2]: has 3 entries where at most 2 belong",
+        "fields = []: has 0 entries where at least 1 belongs; give which fields",
+        "size = 'x': is not a whole number; give the long side",
+        "number = 1.5: is not a whole number; give how many there are",
+        "name = '': is empty",
+    ]
+
+
 def test_nested_sections_are_no_doors_of_their_own(tmp_path: Path) -> None:
     """Without the mark of its ``__init__`` pydantic would call that of every nested section, and lose the folder."""
     (tmp_path / "spacing.txt").write_text("0.25")
