@@ -12,7 +12,7 @@ p1 is the pressure of the line where the edge of the water is now, and (d + w)/(
 continues departures of the first rows from the line with the other sign, so that such swings neither gain nor lose.
 With p0 - (p̄ - p0) d/z̄, as in earlier versions, they gained once water had passed outwards: after 0.11 spacings more
 than diffusion took, and they grew (a layer of 40 rows that consolidates, 40 mm/s in place of 0.3); once it had passed
-inwards they pushed: ground that a face lifts by half a spacing had up to 1.14 of its momentum.
+inwards they pushed: ground that a face lifts by half a spacing had up to 1.14 of its momentum (damping bounded).
 With p0 - s d they fade, but flow between faces 8 m deep is 2.3 % low.  Adami, Hu & Adams, J. Comput. Phys. 231 (2012)
 7057, have the means, for walls that nothing passes.
 
