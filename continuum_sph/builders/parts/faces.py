@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from continuum_sph.scene.face import FaceSection
 from continuum_sph.seepage import PoreFlow, PressureFace
 from continuum_sph.seepage.pressure_face import flux_before, in_columns
+from continuum_sph.seepage.sheet_pile import FREE, CutPairList
 from continuum_sph.water.state import VX, VY
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
@@ -70,7 +71,10 @@ class FacePart(Part):
         self.faces, self.flow, self.spacing = flow.faces, flow, spacing
         self.outer = [face.columns[self._depth(face, flow.home) < spacing] for face in self.faces]
         taken = np.concatenate([face.columns.ravel() for face in self.faces])
-        walls = np.setdiff1d(np.arange(flow.layer.fluid, flow.layer.count), taken)
+        of_tank = np.arange(flow.layer.fluid, flow.layer.count)
+        if isinstance(flow.pairs, CutPairList):  # a pile's particles are seen from its sides alone
+            of_tank = of_tank[flow.pairs.side[of_tank] == FREE]
+        walls = np.setdiff1d(of_tank, taken)
         self.past = [self._past(it.axis, face, walls) for it, face in zip(sections, self.faces, strict=True)]
 
     def _past(self, axis: int, face: PressureFace, walls: NDArray[np.int64]) -> NDArray[np.int64]:
