@@ -85,6 +85,9 @@ DAMPED_BY = 0.04
 HELD_BACK = DAMPED_BY * 2.0 / math.pi
 """Share of the strength that bounded damping bears where one side of a plane slips over the other, in the mean of
 directions; on a square lattice 0.70 DAMPED_BY at most and 0.44 along its rows (h of 1.375 spacings)."""
+BRAKED_BY = 0.055
+"""Shear stress of damping without a bound where the two rows of a square lattice along a plane slip past each other at
+v, over ρ α c h v/Δx, with the gradients that particles see of a step of velocity, h of 1.375 spacings."""
 UNBOUND = 1e30  # Pa, in place of a stress: the bound of what has none
 YIELDING = 1e12  # s: over a rate of plastic shear strain of 1e-12 1/s a particle yields
 

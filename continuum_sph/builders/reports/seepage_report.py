@@ -19,6 +19,7 @@ from continuum_sph.builders.reports.soil_report import (
     report_origin,
     report_rate,
     report_side_walls,
+    report_slip,
     report_softening,
     report_strain,
     report_watched,
@@ -77,7 +78,9 @@ def seepage_report(scene: Scene) -> Report:
     if not section.held:
         step = min(step, moving(scene, out, law, stiff))
         dry = section.density * scene.gravity * (section.surface_over(soil, 0.5 * scene.numerics.spacing) - soil[:, 1])
-        report_strain(out, section, float((dry - buoyancy(scene, soil)).max()))
+        borne = float((dry - buoyancy(scene, soil)).max())
+        report_strain(out, section, borne)
+        report_slip(out, section, soil_law(scene), borne)
     air = len(air_pores(scene, soil))
     if scene.air:
         air_report(out, scene, law, air)

@@ -14,6 +14,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection
 from continuum_sph.soil import SoilLaw
 from continuum_sph.soil.material import Material
+from continuum_sph.soil.momentum import BRAKED_BY, HELD_BACK
 from continuum_sph.soil.parameters import RULES
 from continuum_sph.soil.softening import band_width
 from porescale.common.api.report import Report, report_output
@@ -24,6 +25,7 @@ STEEPEST, FEWEST = math.radians(75.0), 4
 """Steepest face on which cohesive ground without tension stood (10 and 20 rows, c = γH): of 80 degrees and more it fell
 within 4 s.  And rows of a face that is more than a step of particles."""
 HEAVIEST = 4000.0  # kg/m³, of grains: quartz has 2650, basalt 3000, garnet up to 4300
+TENTH = 0.1
 SOFTEST = 0.02
 """Strain at the floor under its own weight above which soil is so soft that its shape is not the scene's.  It falls to
 nothing at the surface, so the mean is half of it: heights and densities change by 1 % as the weight comes on or is
@@ -62,6 +64,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
         out.row("stress ratio at failure", (1.0 + math.sin(phi)) / (1.0 - math.sin(phi)), "", "without cohesion")
         limit = math.atan(math.sin(phi) * math.cos(psi) / (1.0 - math.sin(phi) * math.sin(psi)))
         out.row("angle at which an endless slope shears", math.degrees(limit), "degrees", "without cohesion")
+    report_slip(out, section, law, material.density * scene.gravity * section.height)
     warn_of_rest(out, section, material, material.density * scene.gravity * section.height)
     warn_of_steep_faces(scene, out)
     report_softening(out, section, law, pressure)
@@ -209,6 +212,24 @@ def report_rate(out: Report, scene: Scene, *, wet: bool) -> None:
     if wet and viscosity > 0.0:
         stokes = grains * rate.grain_diameter**2 * pace / viscosity
         out.warn(f"[soil.rate] is of dry grains: in water, viscosity can brake them first (Stokes number {stokes:.2g})")
+
+
+def report_slip(out: Report, section: SoilSection, law: SoilLaw, weight: float) -> None:
+    """Add to a report how fast a slip may be before damping bears of it what the soil should, where grains bear
+    ``weight`` (Pa) at the floor."""
+    if section.elastic or section.held or law.printed_damping or not law.damping > 0.0:
+        return
+    if law.bounded:
+        out.row("slip held back by damping", HELD_BACK, "", "of the strength, at any speed and spacing")
+        return
+    material = law.materials[0]
+    strength = 0.5 * weight * material.sin_friction + material.cohesion_intercept
+    pressure = 0.5 * weight * (1.0 + material.rest)
+    sound = math.sqrt(material.column_modulus * material.stiffness_at(pressure) / material.stiffness / material.density)
+    viscous = BRAKED_BY * material.density * law.damping * sound * law.smoothing.length
+    speed = TENTH * strength * law.spacing / viscous
+    why = f'of the strength at half height; damping_of = "bounded": {100.0 * HELD_BACK:.2g} % at any speed'
+    out.row("slip held back by a tenth", speed, "m/s", why)
 
 
 def report_side_walls(out: Report, section: SoilSection, *, wet: bool) -> None:

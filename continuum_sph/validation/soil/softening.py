@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from continuum_sph.soil import Material, Softening
+from continuum_sph.soil.momentum import BRAKED_BY
 from continuum_sph.soil.softening import band_width
 from continuum_sph.soil.steadying import steadied
 from continuum_sph.soil.stress import XY
@@ -144,9 +145,8 @@ def course(rows: int, pace: float = PACE, band: float | None = None) -> float:
     return float(np.abs(stress - exact)[late].max() / (FIRM - WEAK))
 
 
-BRAKE = 0.055 * DENSITY * DEEP * math.sqrt(GRAVITY * DEEP) * PACE
-"""Pa m: shear stress of damping between two rows that slip, over the spacing.  The factor is the sum over pairs of a
-square lattice, with the gradients that particles see of a step of velocity, h of 1.375 spacings."""
+BRAKE = BRAKED_BY * DENSITY * DEEP * math.sqrt(GRAVITY * DEEP) * PACE
+"""Pa m: shear stress of damping between two rows that slip, over the spacing."""
 
 
 @VALIDATIONS.row(
