@@ -145,7 +145,7 @@ def test_a_front_that_slips_is_faster_than_one_over_ground_may_be():  # the twin
 def test_water_that_has_the_gradients_of_ground_shrinks(monkeypatch):
     depth, askew = open_water.stirred(0.025)
     assert abs(depth) < tolerance("continuum.stirred_water_over_ground")
-    assert abs(askew) < 0.5 * 0.025 * 2.0**0.5  # of still water a level is known to half a spacing, each of two
+    assert abs(askew) < 0.5 * 0.025 * 2.0**0.5  # in the mean a level is known to half a spacing, each of two
     monkeypatch.setattr(pores, "open_gradients", lambda *_: None)
     depth, _ = open_water.stirred(0.025)
     assert depth < -tolerance("continuum.stirred_water_over_ground")
