@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from base64 import b64encode
 from dataclasses import replace
-from io import BytesIO
 from textwrap import shorten
 from typing import TYPE_CHECKING
 
@@ -120,15 +119,12 @@ class ShownSimulation(BaseSimulation):
         return f"Simulation {shorten(self.name, 90, placeholder=' …')!r}\n{time}\n{self._sizes()}"
 
     def _repr_png_(self) -> bytes:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-
+        from porescale.common.evidence.files import new_figure, png
         from porescale.common.pictures.axes import size_of
 
-        figure, content = Figure(size_of(self._look()), layout="constrained"), BytesIO()
+        figure = new_figure(*size_of(self._look()))
         self.plot(figure.add_subplot())
-        FigureCanvasAgg(figure).print_png(content)
-        return content.getvalue()
+        return png(figure, round(figure.dpi))
 
     def _repr_html_(self) -> str:
         from html import escape

@@ -46,9 +46,8 @@ def pack(snapshot: Snapshot, look: Look, precision: Precision, first: Snapshot |
     """A snapshot as the bytes of a frame."""
     packed = Packed(bytearray())
     head: dict[str, Any] = {"time": snapshot.time, "step": snapshot.step}
-    lines = look.lines(snapshot) if callable(look.lines) else look.lines
-    head["lines"] = _ends(lines)
-    head["marks"] = _ends(look.marks(snapshot) if look.marks is not None else ())
+    head["lines"] = _ends(look.lines_at(snapshot))
+    head["marks"] = _ends(look.marks_at(snapshot))
     head["grids"] = {
         name: _grid(packed, grid, precision, first.grids.get(name) if first else None)
         for name, grid in snapshot.grids.items()
@@ -114,11 +113,7 @@ def colour_maps() -> dict[str, str]:
     """Perceptual colour maps of matplotlib, 256 RGB bytes each, in base64."""
     from base64 import b64encode
 
-    import matplotlib
+    from porescale.common.pictures.look import colour_table
 
-    def table(name: str) -> str:
-        """The colours of one map."""
-        colours = matplotlib.colormaps[name](np.arange(256) / 255.0)[:, :3]
-        return b64encode((colours * 255 + 0.5).astype(np.uint8).tobytes()).decode()
-
-    return {name: table(name) for name in ("viridis", "cividis", "magma", "RdBu_r", "PuOr_r")}
+    names = ("viridis", "cividis", "magma", "RdBu_r", "PuOr_r")
+    return {name: b64encode(colour_table(name).tobytes()).decode() for name in names}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -102,7 +101,6 @@ def _range(
 
 def _look(look: Look, first: Snapshot, dot: float) -> dict[str, Any]:
     """What a page shows at first, as `show` does."""
-    plain_look = replace(look, lines=(), marks=None)
     cloud = look.drawn(first)
     name = next((key for key, each in first.clouds.items() if each is cloud), "")
     colour = look.colouring(cloud) if cloud is not None else ""
@@ -115,7 +113,7 @@ def _look(look: Look, first: Snapshot, dot: float) -> dict[str, Any]:
     return {
         "grid": look.grid if look.painted(first) is not None else "", "field": quantity(look.field), "cloud": name,
         "colour": quantity(colour), "walls": look.walls, "dot": dot, "plain": look.plain, "period": list(look.period),
-        "shapes": look.shapes, "label": look.label, "title": plain_look.title,
+        "shapes": look.shapes, "label": look.label, "title": look.title,
         "kinds": {str(key): list(value) for key, value in look.kinds.items()} if colour else {},
     }  # fmt: skip
 
