@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from porescale.common.core.errors import InputError
+from porescale.common.record.read_card import scene_folder
 
 if TYPE_CHECKING:
     from porescale.common.api.program import Program
@@ -118,9 +119,8 @@ def completing(
 
     def completed(scene: Mapping[str, Any]) -> Mapping[str, Any]:
         """The scene of a card with the keys that came later."""
-        folder = Path(card["scene_file"]).parent if card.get("scene_file") else None
         try:
-            return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=folder))
+            return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=scene_folder(card)))
         except InputError:
             return scene
 

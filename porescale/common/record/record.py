@@ -27,6 +27,8 @@ from porescale.common.record.sampler import Sampler
 from porescale.common.record.schedule import Schedule
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import Series, require_length
+from porescale.common.schema.messages import parse_key
+from porescale.common.schema.scene_file import holds
 
 MADE_LATER = (
     "final.png", "montage.png", "streamlines.png", "vorticity.png", "stream_function.png", "film.mp4", "film.webm",
@@ -253,7 +255,7 @@ def check_changes(folder: Path, given: dict[str, Any], today: Today | None = Non
         problem, way = f"was {was!r}", f"resume with {was!r}, or "
         if was is None:
             problem, way = "was absent", "resume without it, or "
-        if not cards.has_key(old, key):
+        if key and not holds(old, parse_key(key)):
             problem = "the run was begun by a version without it"
             same = "leave it out" if was is None else f"set it to {was!r}"
             way = "" if whole is old else f"{same} to go on as that did, or "
