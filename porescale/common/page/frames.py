@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from porescale.common.core.picked import every_so_many
 from porescale.common.page.quantise import ALIGNED, Packed, Precision
 from porescale.common.record.card import plain
 from porescale.common.record.model import Cloud, Grid, Snapshot
@@ -33,13 +34,8 @@ def frame(run: Run, i: int, precision: Precision = FINE, first: Snapshot | None 
     first : the first frame's snapshot: what has not changed since is not repeated.  IndexError beyond the last,
     InputError when the file is damaged.
     """
-    return pack(run.snapshot(kept(len(run), precision.thin)[i]), run.program.look(run), precision, first if i else None)
-
-
-def kept(count: int, thin: int) -> list[int]:
-    """Which of ``count`` snapshots a page holds: every ``thin``-th, and the last."""
-    found = list(range(0, count, thin))
-    return found if not count or found[-1] == count - 1 else [*found, count - 1]
+    k = every_so_many(len(run), precision.thin)[i]
+    return pack(run.snapshot(k), run.program.look(run), precision, first if i else None)
 
 
 def pack(snapshot: Snapshot, look: Look, precision: Precision, first: Snapshot | None = None) -> bytes:

@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from porescale.common.core.atomic import write_bytes
+from porescale.common.core.picked import every_so_many, spread
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.canvas import Canvas
 from porescale.common.pictures.layout import DPI, Style, pixels, screen, stage
@@ -25,6 +26,8 @@ CALM = 0.01
 SURVEYED = 24
 """At most so many snapshots are looked at for the colours' range."""
 
+TIMES = 6
+"""Panels of a montage."""
 WIDER = 1.25
 """How much longer a montage may be than a picture of one time."""
 FINER = 3
@@ -113,8 +116,7 @@ def painter_of(run: Run, look: Look) -> Painter:
 
 def surveyed(run: Run) -> list[int]:
     """Numbers of the snapshots that colours are taken from."""
-    every = max(1, -(-len(run) // SURVEYED))
-    return sorted({*range(0, len(run), every), len(run) - 1})
+    return every_so_many(len(run), max(1, -(-len(run) // SURVEYED)))
 
 
 def pictures(run: Run, painter: Painter) -> list[Path]:
@@ -122,9 +124,8 @@ def pictures(run: Run, painter: Painter) -> list[Path]:
     cells = painter.survey.look.cells
     last = run.snapshot(-1, cells)
     made = {"final.png": painter.paint(last)}
-    times = np.unique(np.linspace(0, len(run) - 1, 6).round().astype(int))
-    if len(times) > 1:
-        made["montage.png"] = montage(painter, list(run.snapshots(cells, times.tolist())))
+    if len(run) > 1:
+        made["montage.png"] = montage(painter, list(run.snapshots(cells, spread(len(run), TIMES))))
     if painter.survey.look.streamlines:
         made["streamlines.png"] = painter.streamlines(last)
     for name, image in made.items():
