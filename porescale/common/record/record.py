@@ -7,12 +7,11 @@ start.
 """
 
 import time as clock
-import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from porescale.common.core.errors import Fault, InputError, PorescaleError, PorescaleWarning
+from porescale.common.core.errors import Fault, InputError, PorescaleError, warn
 from porescale.common.core.machine import peak_bytes
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
@@ -117,9 +116,7 @@ class Record:
         on = {"device": card["device"]} if "device" in card else {}
         card["resumed"] = [*card.get("resumed", []), {**reached, **on}]
         if changed:
-            what = ", ".join(changed)
-            text = f"resumed with other {what}: not promised to go on bit for bit"
-            warnings.warn(text, PorescaleWarning, stacklevel=2)
+            warn(f"resumed with other {', '.join(changed)}: not promised to go on bit for bit")
         card.update(outcome=cards.RUNNING, ended=None)
         card.pop("problem", None)
         cards.write_card(folder, card)
