@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from functools import cached_property
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.extras import installed
 from porescale.common.core.given_file import path_of
-from porescale.common.core.html import Html, html_table, in_kernel, widget_bundle
+from porescale.common.core.html import Html, data_url, html_table, in_kernel, widget_bundle
 from porescale.common.record import open_run as record
 from porescale.common.record.columns import TIME, WIDE, Columns, missing
 from porescale.common.record.model import Snapshot
@@ -324,9 +323,7 @@ class Run(record.Run):
         about = [(key, f"{card[key]}{unit}") for key, unit in keys.items() if card.get(key) not in (None, "")]
         text = html_table(f"Run {self.name!r} of {self.card.get('package', self.program.name)}", (), [*about, *rows])
         picture = self._repr_png_()
-        if picture is None:
-            return text
-        return f"{text}<img style='max-width:100%' src='data:image/png;base64,{b64encode(picture).decode()}'>"
+        return text if picture is None else f"{text}<img style='max-width:100%' src='{data_url('image/png', picture)}'>"
 
 
 def wanted_of(words: Mapping[str, Any], known: Collection[str] = ()) -> Wanted:

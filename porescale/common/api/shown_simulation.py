@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from base64 import b64encode
 from dataclasses import replace
 from textwrap import shorten
 from typing import TYPE_CHECKING
 
 from porescale.common.api.simulation import BaseSimulation
+from porescale.common.core.html import data_url
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -129,7 +129,7 @@ class ShownSimulation(BaseSimulation):
     def _repr_html_(self) -> str:
         from html import escape
 
-        picture = b64encode(self._repr_png_()).decode()
+        picture = data_url("image/png", self._repr_png_())
         lines = "<br>".join(escape(line) for line in repr(self).splitlines())
         table = self._report()._repr_html_()
-        return f"<p>{lines}</p><img src='data:image/png;base64,{picture}'>{table}"
+        return f"<p>{lines}</p><img src='{picture}'>{table}"
