@@ -51,14 +51,12 @@ def rehearsed(scene: Scene) -> AbstractContextManager[None]:
 
 def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], **options: Any) -> Outcome:
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
-    import warnings
-
     from porescale.analysis.bed_permeability import write_permeability
     from porescale.builders.after_run import density_doubt
     from porescale.builders.checks.device import gpu_of
     from porescale.builders.cost import work
     from porescale.common.api.run_scene import drive_scene
-    from porescale.common.core.errors import PorescaleWarning
+    from porescale.common.core.errors import warn
     from porescale.common.page.page import write_report
     from porescale.common.record.open_run import open_run
     from porescale.common.record.series import run_table
@@ -67,7 +65,7 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         """Leave the pictures, the permeability of the bed if there is one, and the page unless the scene has none; warn
         of a density too far from that at rest."""
         if doubt := density_doubt(run_table(finished, "series")):
-            warnings.warn(doubt, PorescaleWarning, stacklevel=2)
+            warn(doubt)
         pictures = show(finished)
         write_permeability(open_run(finished), finished)
         if pictures and scene.output.report:

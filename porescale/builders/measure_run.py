@@ -4,7 +4,6 @@ The instruments of a simulation read the state of a snapshot in place of its own
 run, but for the single precision in which fields are stored.
 """
 
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +15,7 @@ from porescale.builders.parts.flow_fields import total_pressure
 from porescale.builders.parts.flow_instruments import FlowInstruments
 from porescale.builders.parts.grain_instruments import CONTACTS, GrainInstruments, region_row
 from porescale.builders.stepper import Clock, Fields
-from porescale.common.core.errors import Fault, InputError, PorescaleWarning
+from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.open_run import Run
 from porescale.common.schema.sections import scene_as_dict
@@ -57,7 +56,7 @@ def measure_run(run: Run, scene: Scene) -> dict[str, Table]:
         for name, row in found.items():
             rows.setdefault(name, []).append(row)
     for what in sorted(left_out):
-        warnings.warn(f"not measured: {what}", PorescaleWarning, stacklevel=5)
+        warn(f"not measured: {what}")
     tables = {name: {key: [row[key] for row in each] for key in each[0]} for name, each in rows.items()}
     if scene.line:
         tables["lines"] = profiles(run, scene_as_dict(scene)["line"])

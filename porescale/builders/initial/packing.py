@@ -1,11 +1,10 @@
 """Radii of a packing, packings that are pressed together, and void ratios that settling did not reach."""
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
 
-from porescale.common.core.errors import InputError, PorescaleWarning
+from porescale.common.core.errors import InputError, warn
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.grading import given_radii, graded_radii, lognormal_radii
 from porescale.common.neighbors.placement import draw_radii
@@ -112,19 +111,15 @@ def say_void_ratio(packing: Packing, grains: Grains, around: Obstacles = NOTHING
         corner = packing.left, packing.bottom
         found = void_ratio_in(corner, (corner[0] + packing.width, corner[1] + packing.height), grains, around)
         if abs(found - packing.void_ratio) > MISSED * packing.void_ratio:
-            warnings.warn(
+            warn(
                 f"grains.packing.void_ratio = {packing.void_ratio:g} sets the number of grains by the whole rectangle;"
-                f" around what stands in it their void ratio is {found:.3g} (solid fraction {1 / (1 + found):.3g})",
-                PorescaleWarning,
-                stacklevel=2,
+                f" around what stands in it their void ratio is {found:.3g} (solid fraction {1 / (1 + found):.3g})"
             )
         return
     found = settled_void_ratio(packing, grains, around)
     if abs(found - packing.void_ratio) > MISSED * packing.void_ratio:
-        warnings.warn(
+        warn(
             f"grains.packing.void_ratio = {packing.void_ratio:g} sets the number of grains; the bed settled to"
             f" {found:.3g} (solid fraction {1 / (1 + found):.3g}): settling_friction and settling_rolling_friction"
-            " loosen it, compress = true reaches a void ratio exactly",
-            PorescaleWarning,
-            stacklevel=2,
+            " loosen it, compress = true reaches a void ratio exactly"
         )

@@ -11,6 +11,7 @@ import numpy as np
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.columns import Columns
+from porescale.common.record.read_card import scene_folder
 from porescale.common.schema import scene_file
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.sections import Section, validate
@@ -41,8 +42,8 @@ def measure(run: Run, program: Program, given: Sequence[Any], sections: Mapping[
     run.require_snapshots()
     card = run.card
     kept = {key: value for key, value in card["scene"].items() if key not in program.measured}
-    folder = Path(card["scene_file"]).parent if card.get("scene_file") else None
-    scene = validate(program.scene(), {**scene_file.merge(program.formerly, kept), **asked}, folder=folder)
+    tables = {**scene_file.merge(program.formerly, kept), **asked}
+    scene = validate(program.scene(), tables, folder=scene_folder(card))
     found = program.measure(run, scene)
     return {name: Columns({key: np.array(column) for key, column in table.items()}, name)
             for name, table in found.items()}  # fmt: skip

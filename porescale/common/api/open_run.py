@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from functools import cached_property
@@ -13,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.extras import installed
 from porescale.common.core.given_file import path_of
-from porescale.common.core.html import Html, html_table, in_kernel, widget_bundle
+from porescale.common.core.html import Html, data_url, html_table, in_kernel, widget_bundle
 from porescale.common.record import open_run as record
 from porescale.common.record.columns import TIME, WIDE, Columns, missing
 from porescale.common.record.model import Snapshot
-from porescale.common.record.read_card import read_card
+from porescale.common.record.read_card import read_card, short_commit
 from porescale.common.record.series import WORDS
 from porescale.common.record.vtkhdf import Readers
 
@@ -111,8 +110,7 @@ class Run(record.Run):
     def commit(self) -> str:
         """Eight digits of the commit of the package's tree that made the run, with a + where files had changed since;
         "" where it lay in none."""
-        known = self.card.get("commit")
-        return known["hash"][:8] + "+" * known["changed"] if known else ""
+        return short_commit(self.card.get("commit"))
 
     @property
     def tables(self) -> list[str]:
@@ -197,10 +195,9 @@ class Run(record.Run):
         beside this with the same colours;  words : those of `picture`, and times (s), every, fps, style ("paper" or
         "talk") and format.  InputError where the runs have not what they ask for, or their boxes differ.
         """
-        from porescale.common.pictures.choose import Wanted
         from porescale.common.pictures.figure import figure_of, write_figure
 
-        wanted = wanted_of(Wanted, words)
+        wanted = wanted_of(words)
         if against is not None and not isinstance(against, Run):
             problem, repair = f"is no run ({type(against).__name__})", "give one of open_run"
             raise InputError(Fault("against", str(against), problem, repair=repair))
@@ -258,10 +255,10 @@ class Run(record.Run):
 
     def _painter_of(self, words: LookWords, others: Sequence[str] = ()) -> Painter:
         """What paints snapshots as ``words`` ask for;  others : what messages name as known besides."""
-        from porescale.common.pictures.choose import LookWords, Wanted
+        from porescale.common.pictures.choose import LookWords
         from porescale.common.pictures.picture import painter_of
 
-        wanted = wanted_of(Wanted, words, (*LookWords.__annotations__, *others))
+        wanted = wanted_of(words, (*LookWords.__annotations__, *others))
         if isinstance(wanted.size, str):
             repair = "give pixels, 200 to 8000; a width is that of run.figure"
             raise InputError(Fault("size", wanted.size, "is no number of pixels", repair=repair))
@@ -326,21 +323,21 @@ class Run(record.Run):
         about = [(key, f"{card[key]}{unit}") for key, unit in keys.items() if card.get(key) not in (None, "")]
         text = html_table(f"Run {self.name!r} of {self.card.get('package', self.program.name)}", (), [*about, *rows])
         picture = self._repr_png_()
-        if picture is None:
-            return text
-        return f"{text}<img style='max-width:100%' src='data:image/png;base64,{b64encode(picture).decode()}'>"
+        return text if picture is None else f"{text}<img style='max-width:100%' src='{data_url('image/png', picture)}'>"
 
 
-def wanted_of(kind: type[Wanted], words: Mapping[str, Any], known: Collection[str] = ()) -> Wanted:
+def wanted_of(words: Mapping[str, Any], known: Collection[str] = ()) -> Wanted:
     """Words of Python as what is wanted; InputError, with the nearest, for a word that is none.
 
-    known : the words that there are (empty: all of ``kind``).
+    known : the words that there are (empty: all of `Wanted`).
     """
-    known = known or [it.name for it in fields(kind)]
+    from porescale.common.pictures.choose import Wanted
+
+    known = known or [it.name for it in fields(Wanted)]
     for name in words:
         if name not in known:
             raise missing("argument", name, known, "those of pictures")
-    return kind(**words)
+    return Wanted(**words)
 
 
 def open_run(folder: Path | str, program: Program) -> Run:

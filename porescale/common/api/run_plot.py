@@ -6,16 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record.columns import TIME, Columns
+from porescale.common.record.columns import TIME, Columns, split
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-
-def split(column: str) -> tuple[str, str]:
-    """Name and unit of a column: "front (m)" is ("front", "m")."""
-    name, _, unit = column.rpartition(" (")
-    return (name, unit.removesuffix(")")) if name else (column, "")
 
 
 def plot(table: Columns, columns: Sequence[str], ax: Axes | None = None) -> Any:

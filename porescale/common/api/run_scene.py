@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from porescale.common.core.errors import InputError
+from porescale.common.record.read_card import scene_folder
 
 if TYPE_CHECKING:
     from porescale.common.api.program import Program
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from porescale.common.schema.sections import Section
 
 S = TypeVar("S", bound="Section")
+NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 def drive_scene(
@@ -29,7 +31,7 @@ def drive_scene(
     card: dict[str, Any],
     after: Callable[[Path], object],
     work: Work,
-    formerly: Mapping[str, Any] = MappingProxyType({}),
+    formerly: Mapping[str, Any] = NOTHING,
     **options: Any,
 ) -> Outcome:
     """`drive` the model for as long as its scene says, with rows, snapshots and checkpoints when it says.
@@ -50,7 +52,7 @@ def drive_scene(
         checkpoint_seconds=scene.output.checkpoint_seconds,
         card=card,
         after=after,
-        today=_completing(type(scene), card, formerly),
+        today=completing(type(scene), card, formerly),
         finish=expected(work).seconds[FINISHING],
         **options,
     )
@@ -92,20 +94,20 @@ def check_scene_resume(program: Program, folder: Path, card: dict[str, Any]) -> 
     """InputError where the run in ``folder`` cannot be gone on with as ``card`` requests."""
     from porescale.common.record.drive import check_resume
 
-    check_resume(folder, card, today=_completing(program.scene(), card, program.formerly))
+    check_resume(folder, card, today=completing(program.scene(), card, program.formerly))
 
 
 def check_same_scene(program: Program, folder: Path, card: dict[str, Any]) -> None:
     """InputError naming every key of a scene in which the run in ``folder`` differs from that of ``card``."""
     from porescale.common.record.record import check_changes
 
-    check_changes(folder, card, _completing(program.scene(), card, program.formerly))
+    check_changes(folder, card, completing(program.scene(), card, program.formerly))
 
 
-def _completing(
-    scene_type: type[Section], card: Mapping[str, Any], formerly: Mapping[str, Any] = MappingProxyType({})
+def completing(
+    scene_type: type[Section], card: Mapping[str, Any] = NOTHING, formerly: Mapping[str, Any] = NOTHING
 ) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
-    """What completes the full scene on an older run's card with the keys that came after it, at what they were before.
+    """What completes the full scene of an older record with the keys that came after it, at what they were before.
 
     That is their default, or what ``formerly``, tables like those of a scene, says where the default does something
     else.  Files that it names are looked for where the scene of ``card`` lies, with which the run is resumed.  A
@@ -117,9 +119,8 @@ def _completing(
 
     def completed(scene: Mapping[str, Any]) -> Mapping[str, Any]:
         """The scene of a card with the keys that came later."""
-        folder = Path(card["scene_file"]).parent if card.get("scene_file") else None
         try:
-            return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=folder))
+            return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=scene_folder(card)))
         except InputError:
             return scene
 

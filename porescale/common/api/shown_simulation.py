@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from base64 import b64encode
 from dataclasses import replace
-from io import BytesIO
 from textwrap import shorten
 from typing import TYPE_CHECKING
 
 from porescale.common.api.simulation import BaseSimulation
+from porescale.common.core.html import data_url
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,20 +119,17 @@ class ShownSimulation(BaseSimulation):
         return f"Simulation {shorten(self.name, 90, placeholder=' …')!r}\n{time}\n{self._sizes()}"
 
     def _repr_png_(self) -> bytes:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-
+        from porescale.common.evidence.files import new_figure, png
         from porescale.common.pictures.axes import size_of
 
-        figure, content = Figure(size_of(self._look()), layout="constrained"), BytesIO()
+        figure = new_figure(*size_of(self._look()))
         self.plot(figure.add_subplot())
-        FigureCanvasAgg(figure).print_png(content)
-        return content.getvalue()
+        return png(figure, round(figure.dpi))
 
     def _repr_html_(self) -> str:
         from html import escape
 
-        picture = b64encode(self._repr_png_()).decode()
+        picture = data_url("image/png", self._repr_png_())
         lines = "<br>".join(escape(line) for line in repr(self).splitlines())
         table = self._report()._repr_html_()
-        return f"<p>{lines}</p><img src='data:image/png;base64,{picture}'>{table}"
+        return f"<p>{lines}</p><img src='{picture}'>{table}"

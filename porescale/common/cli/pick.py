@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,29 +66,23 @@ def _end(scene: Any) -> float | None:
 
 def beyond(package: Package, file: Path, front: Front, point: FrontPoint, settings: Sequence[str]) -> list[str]:
     """In what a run of a point leaves what its front was measured with: scene, settings, range of time."""
-    from porescale.common.schema.sections import load, scene_as_dict
-    from porescale.common.studies.parameter_table import flat
+    from porescale.common.api.run_scene import completing
+    from porescale.common.studies.parameter_table import changed, flat, values_of
     from porescale.common.studies.trade_plan import read_plan
-
-    def keys(overrides: Sequence[str]) -> dict[str, Any]:
-        """The scene of the point with ``overrides``, a value for each key."""
-        words = (*point.settings, *overrides)
-        return dict(flat(scene_as_dict(load(file, package.scene(), quality=point.quality, overrides=words))))
 
     over = front.over
     if over is None and (file.parent / "trade.toml").is_file():
         plan = read_plan(file, None)
         over = plan.over.key if plan.over else None
-    now, then = keys(settings), keys(front.settings)
+    now, then = (values_of(package, file, (*point.settings, *it), point.quality) for it in (settings, front.settings))
     if front.scene is not None:  # the file may have changed since
-        base, today = dict(flat(_completed(package, front.scene))), dict(flat(_scene(package, file, front.settings)))
-        then |= {key: base.get(key) for key in base.keys() | today.keys() if base.get(key) != today.get(key)}
-    changed = sorted(key for key in now.keys() | then.keys() if now.get(key) != then.get(key))
-    changed = [key for key in changed if not key.startswith(FREE) and key not in ("time.end", over)]
+        base, today = dict(flat(completing(package.scene())(front.scene))), values_of(package, file, front.settings)
+        then |= {key: base.get(key) for key in changed(base, today)}
+    keys = [key for key in changed(now, then) if not key.startswith(FREE) and key not in ("time.end", over)]
     made = []
-    if changed:
-        few = ", ".join(f"{key} = {now.get(key)}, there {then.get(key)}" for key in changed[:3])
-        more = f" and {len(changed) - 3} more" if len(changed) > 3 else ""
+    if keys:
+        few = ", ".join(f"{key} = {now.get(key)}, there {then.get(key)}" for key in keys[:3])
+        more = f" and {len(keys) - 3} more" if len(keys) > 3 else ""
         made.append(f"{front.file} was measured with another scene: {few}{more}; its errors are not those of this run")
     end = now.get("time.end")
     if isinstance(end, float) and end > 1.01 * point.time:
@@ -97,32 +91,15 @@ def beyond(package: Package, file: Path, front: Front, point: FrontPoint, settin
     return made
 
 
-def _scene(package: Package, file: Path, settings: Sequence[str], quality: str | None = None) -> dict[str, Any]:
-    from porescale.common.schema.sections import load, scene_as_dict
-
-    return scene_as_dict(load(file, package.scene(), quality=quality, overrides=settings))
-
-
-def _completed(package: Package, scene: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A recorded ``scene`` with the defaults of keys that are newer than its record; as it is where it is no longer
-    one."""
-    from porescale.common.schema.sections import scene_as_dict, validate
-
-    try:
-        return scene_as_dict(validate(package.scene(), scene))
-    except InputError:
-        return scene
-
-
 def better_level(package: Package, file: Path, front: Front, error: float) -> str:
     """The cheapest quality of a scene whose error is at most ``error``, as text; "" where there is none."""
     from porescale.common.schema import scene_file
-    from porescale.common.studies.parameter_table import flat
+    from porescale.common.studies.parameter_table import values_of
 
-    levels = {name: dict(flat(_scene(package, file, (), name))) for name in scene_file.read(file).get("quality") or ()}
+    levels = {name: values_of(package, file, (), name) for name in scene_file.read(file).get("quality") or ()}
     good = [point for point in front.every if point.error <= error]
     for point in sorted([*good, *([front.reference] if front.reference else [])], key=lambda one: one.core_seconds):
-        its = dict(flat(_scene(package, file, point.settings, point.quality)))
+        its = values_of(package, file, point.settings, point.quality)
         name = next((name for name, level in levels.items() if level == its), None)
         held = point is front.reference
         what = "what errors are held against" if held else f"error {point.error:.2%}; but {point.but}"

@@ -1,6 +1,7 @@
 """What notebooks show: small HTML tables, and where widgets are shown."""
 
 import sys
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -28,6 +29,11 @@ def in_kernel() -> bool:
 def widget_bundle(widget: Any) -> dict[str, Any]:
     """What Jupyter is given to show a widget."""
     return {WIDGET: {"version_major": 2, "version_minor": 1, "model_id": widget.model_id}}
+
+
+def data_url(kind: str, content: bytes) -> str:
+    """Content that a page holds within itself;  kind : as image/png."""
+    return f"data:{kind};base64,{b64encode(content).decode()}"
 
 
 def html_table(caption: str, head: Sequence[object], rows: Iterable[Sequence[object]]) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from porescale.common.core.picked import every_so_many
 from porescale.common.page.quantise import ALIGNED, Packed, Precision
 from porescale.common.record.card import plain
 from porescale.common.record.model import Cloud, Grid, Snapshot
@@ -33,22 +34,16 @@ def frame(run: Run, i: int, precision: Precision = FINE, first: Snapshot | None 
     first : the first frame's snapshot: what has not changed since is not repeated.  IndexError beyond the last,
     InputError when the file is damaged.
     """
-    return pack(run.snapshot(kept(len(run), precision.thin)[i]), run.program.look(run), precision, first if i else None)
-
-
-def kept(count: int, thin: int) -> list[int]:
-    """Which of ``count`` snapshots a page holds: every ``thin``-th, and the last."""
-    found = list(range(0, count, thin))
-    return found if not count or found[-1] == count - 1 else [*found, count - 1]
+    k = every_so_many(len(run), precision.thin)[i]
+    return pack(run.snapshot(k), run.program.look(run), precision, first if i else None)
 
 
 def pack(snapshot: Snapshot, look: Look, precision: Precision, first: Snapshot | None = None) -> bytes:
     """A snapshot as the bytes of a frame."""
     packed = Packed(bytearray())
     head: dict[str, Any] = {"time": snapshot.time, "step": snapshot.step}
-    lines = look.lines(snapshot) if callable(look.lines) else look.lines
-    head["lines"] = _ends(lines)
-    head["marks"] = _ends(look.marks(snapshot) if look.marks is not None else ())
+    head["lines"] = _ends(look.lines_at(snapshot))
+    head["marks"] = _ends(look.marks_at(snapshot))
     head["grids"] = {
         name: _grid(packed, grid, precision, first.grids.get(name) if first else None)
         for name, grid in snapshot.grids.items()
@@ -114,11 +109,7 @@ def colour_maps() -> dict[str, str]:
     """Perceptual colour maps of matplotlib, 256 RGB bytes each, in base64."""
     from base64 import b64encode
 
-    import matplotlib
+    from porescale.common.pictures.look import colour_table
 
-    def table(name: str) -> str:
-        """The colours of one map."""
-        colours = matplotlib.colormaps[name](np.arange(256) / 255.0)[:, :3]
-        return b64encode((colours * 255 + 0.5).astype(np.uint8).tobytes()).decode()
-
-    return {name: table(name) for name in ("viridis", "cividis", "magma", "RdBu_r", "PuOr_r")}
+    names = ("viridis", "cividis", "magma", "RdBu_r", "PuOr_r")
+    return {name: b64encode(colour_table(name).tobytes()).decode() for name in names}

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from porescale.common.api.fields import scalars
-from porescale.common.page.frames import FINE, colour_maps, kept
+from porescale.common.core.picked import every_so_many, spread
+from porescale.common.page.frames import FINE, colour_maps
 from porescale.common.page.quantise import Precision
 from porescale.common.page.tables import names
 from porescale.common.page.texts import again, check, verdicts
@@ -50,7 +50,7 @@ def meta(run: Run, precision: Precision = FINE) -> dict[str, Any]:
 
 def frames_of(run: Run, precision: Precision = FINE) -> dict[str, Any]:
     """Times (s) and steps of the frames."""
-    at = kept(len(run), precision.thin)
+    at = every_so_many(len(run), precision.thin)
     return {"times": run.times[at].tolist() if at else [], "steps": run.steps[at].tolist()}
 
 
@@ -59,8 +59,7 @@ def shown(run: Run) -> dict[str, Any]:
     look = run.program.look(run)
     if not len(run):
         return {"quantities": {"grids": {}, "clouds": {}}, "view": list(look.view or (0, 1, 0, 1)), "look": {}}
-    numbers = sorted(set(np.linspace(0, len(run) - 1, min(SAMPLED, len(run))).round().astype(int).tolist()))
-    sample: list[Snapshot] = list(run.snapshots(None, numbers))
+    sample: list[Snapshot] = list(run.snapshots(None, spread(len(run), SAMPLED)))
     everything = survey(sample, look)
     first = sample[0]
     quantities: dict[str, dict[str, Any]] = {"grids": {}, "clouds": {}}
@@ -102,7 +101,6 @@ def _range(
 
 def _look(look: Look, first: Snapshot, dot: float) -> dict[str, Any]:
     """What a page shows at first, as `show` does."""
-    plain_look = replace(look, lines=(), marks=None)
     cloud = look.drawn(first)
     name = next((key for key, each in first.clouds.items() if each is cloud), "")
     colour = look.colouring(cloud) if cloud is not None else ""
@@ -115,7 +113,7 @@ def _look(look: Look, first: Snapshot, dot: float) -> dict[str, Any]:
     return {
         "grid": look.grid if look.painted(first) is not None else "", "field": quantity(look.field), "cloud": name,
         "colour": quantity(colour), "walls": look.walls, "dot": dot, "plain": look.plain, "period": list(look.period),
-        "shapes": look.shapes, "label": look.label, "title": plain_look.title,
+        "shapes": look.shapes, "label": look.label, "title": look.title,
         "kinds": {str(key): list(value) for key, value in look.kinds.items()} if colour else {},
     }  # fmt: skip
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.page.frames import kept, pack
+from porescale.common.core.picked import every_so_many, spread
+from porescale.common.page.frames import pack
 from porescale.common.page.meta import meta
 from porescale.common.page.quantise import Precision
 from porescale.common.page.scripts import filled, joined, static
@@ -95,13 +96,12 @@ def fitting(run: Run, mebibytes: float) -> Precision:
     """The finest of LADDER with which the run's frames take no more than about ``mebibytes``; the last if none does."""
     if not len(run):
         return LADDER[0]
-    numbers = sorted(set(np.linspace(0, len(run) - 1, min(PROBED, len(run))).round().astype(int).tolist()))
     room = 0.9 * mebibytes * 2**20 - 200_000.0  # the scripts, the tables and the texts
-    look, probed = run.program.look(run), list(run.snapshots(None, numbers))
+    look, probed = run.program.look(run), list(run.snapshots(None, spread(len(run), PROBED)))
     for precision in LADDER:
         packs = (pack(it, look, precision, probed[0] if k else None) for k, it in enumerate(probed))
         sizes = [len(_packed(content)) for content in packs]
-        if BASE64 * float(np.mean(sizes)) * len(kept(len(run), precision.thin)) <= room:
+        if BASE64 * float(np.mean(sizes)) * len(every_so_many(len(run), precision.thin)) <= room:
             return precision
     return LADDER[-1]
 
@@ -115,7 +115,7 @@ def _entries(run: Run, precision: Precision) -> Iterator[tuple[str, bytes]]:
     errors: dict[str, float] = {}
     look = run.program.look(run)
     first: Snapshot | None = None
-    for i, snapshot in enumerate(run.snapshots(None, kept(len(run), precision.thin))):
+    for i, snapshot in enumerate(run.snapshots(None, every_so_many(len(run), precision.thin))):
         content = pack(snapshot, look, precision, first)
         first = first or snapshot
         _largest(errors, content)

@@ -7,9 +7,9 @@ from importlib.resources import files
 
 
 @cache
-def static(name: str) -> str:
-    """The text of a file of ``static``."""
-    return files("porescale.common.page").joinpath("static", name).read_text(encoding="utf-8")
+def static(name: str, package: str = "porescale.common.page") -> str:
+    """The text of a file of the folder ``static`` of a package."""
+    return files(package).joinpath("static", name).read_text(encoding="utf-8")
 
 
 def filled(text: str, parts: Mapping[str, str]) -> str:

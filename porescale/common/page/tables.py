@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from porescale.common.record.columns import TIME, missing
+from porescale.common.core.picked import every_so_many
+from porescale.common.record.columns import TIME, missing, split
 
 if TYPE_CHECKING:
     from porescale.common.api.open_run import Run
@@ -52,9 +53,7 @@ def over_time(name: str, columns: dict[str, AnyArray]) -> dict[str, Any]:
     rows = len(time)
     places = bool(rows > 1 and np.any(np.diff(time) == 0.0))
     every = max(1, math.ceil(rows / MOST_ROWS)) if not places else 1
-    chosen = np.arange(0, rows, every)
-    if rows and chosen[-1] != rows - 1:
-        chosen = np.append(chosen, rows - 1)
+    chosen = np.array(every_so_many(rows, every), int)
     if places and rows > MOST_PLACES:
         times = np.unique(time)
         every = math.ceil(rows / MOST_PLACES)
@@ -76,8 +75,8 @@ def _listed(name: str, path: Path) -> dict[str, Any]:
 
 def _column(text: str) -> dict[str, str]:
     """Name and unit of "front (m)"."""
-    name, bracket, unit = text.rpartition(" (")
-    return {"name": name, "unit": unit.rstrip(")")} if bracket and unit.endswith(")") else {"name": text, "unit": ""}
+    name, unit = split(text)
+    return {"name": name, "unit": unit}
 
 
 def _short(value: float) -> float | None:

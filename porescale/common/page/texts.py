@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from porescale.common.core.errors import InputError, PorescaleError
 from porescale.common.record.card import RUNNING
+from porescale.common.record.read_card import scene_folder
 from porescale.common.studies.quantities import measured
 from porescale.common.studies.sweep import expected
 
@@ -53,9 +54,8 @@ def check(run: Run) -> dict[str, Any]:
 
     if "deck" in run.card["scene"]:
         return {"note": "A deck has no check."}
-    file = run.card.get("scene_file")
     try:
-        scene = validate(run.program.scene(), run.card["scene"], folder=Path(file).parent if file else None)
+        scene = validate(run.program.scene(), run.card["scene"], folder=scene_folder(run.card))
         return run.program.report(scene).as_dict()
     except (PorescaleError, OSError) as error:
         return {"note": f"The scene on the card cannot be checked today: {' '.join(str(error).split())}"}

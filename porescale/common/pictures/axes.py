@@ -6,11 +6,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
-from matplotlib.patches import Patch
 
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.arrows import arrows
-from porescale.common.pictures.layout import draw_bar, fit_ticks, scaled
+from porescale.common.pictures.layout import draw_bar, fit_ticks, kinds_of, scaled
 from porescale.common.pictures.look import (
     PAPER,
     PLATE,
@@ -26,7 +25,7 @@ from porescale.common.pictures.look import (
 )
 from porescale.common.pictures.repeated import discs_again, shifts
 from porescale.common.pictures.shapes import CRACK
-from porescale.common.record.model import Cloud, Snapshot
+from porescale.common.record.model import Cloud, Grid, Snapshot
 
 WIDTH = 8.0
 """Of a figure that is made for the axes, inches."""
@@ -83,10 +82,9 @@ def draw_inside(snapshot: Snapshot, found: Survey, axes: Axes) -> None:
         axes.add_collection(
             PolyCollection(list(pointing), facecolors=PAPER, edgecolors=RIM, linewidths=0.4), autolim=False
         )
-    lines = look.lines(snapshot) if callable(look.lines) else look.lines
-    if len(lines):
+    if len(lines := look.lines_at(snapshot)):
         axes.add_collection(LineCollection(list(np.array(lines) * factor), colors=WALL, linewidths=2.0), autolim=False)
-    if look.marks and len(marks := look.marks(snapshot)):
+    if len(marks := look.marks_at(snapshot)):
         axes.add_collection(LineCollection(list(np.array(marks) * factor), colors=CRACK, linewidths=1.5), autolim=False)
 
 
@@ -105,10 +103,15 @@ def _field(snapshot: Snapshot, found: Survey, axes: Axes, factor: float) -> None
     values = magnitude(grid.cells[look.field], 2)
     axes.imshow(values, cmap=found.field.map_name, vmin=found.field.low, vmax=found.field.high, **place)
     if look.walls in grid.cells:
-        grey = np.zeros((*grid.shape, 4))
-        grey[..., :3] = np.array(rgb(WALL)) / 255
-        grey[..., 3] = np.clip(grid.cells[look.walls], 0.0, 1.0)
-        axes.imshow(grey, **place)
+        axes.imshow(walls(grid, look), **place)
+
+
+def walls(grid: Grid, look: Look, opacity: float = 1.0) -> AnyArray:
+    """What is solid in the cells of a grid, (ny, nx, 4): grey, as opaque as a cell is solid."""
+    grey = np.zeros((*grid.shape, 4))
+    grey[..., :3] = np.array(rgb(WALL)) / 255
+    grey[..., 3] = opacity * np.clip(grid.cells[look.walls], 0.0, 1.0)
+    return grey
 
 
 def _points(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
@@ -168,5 +171,5 @@ def _keys(found: Survey, axes: Axes) -> None:
         beside = axes.inset_axes((1.02 + 0.2 * k, 0.0, 0.025, 1.0))
         draw_bar(axes.figure, scale, beside, float(axes.xaxis.label.get_fontsize()))
     if found.look.kinds:
-        patches = [Patch(facecolor=colour, label=label) for label, colour in found.look.kinds.values()]
-        axes.legend(handles=patches, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, handlelength=1.0)
+        kinds = kinds_of(found.look)
+        axes.legend(handles=kinds, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, handlelength=1.0)

@@ -47,13 +47,12 @@ class Canvas:
             for shift in shifts(shapes, self.look):
                 paint_shapes(image, shapes, self.pixels(shapes.position + shift), self.per_x, colours)
         self._arrows(image, snapshot)
-        lines = self.look.lines(snapshot) if callable(self.look.lines) else self.look.lines
-        for ends in lines:
+        for ends in self.look.lines_at(snapshot):
             start, end = np.rint(self.pixels(np.array(ends, float)) * ONE).astype(int).tolist()
             thick = max(2, self.width // 250)
             cv2.line(image, start, end, rgb(RIM), thick + 2, cv2.LINE_AA, SHIFT)
             cv2.line(image, start, end, rgb(PLATE), thick, cv2.LINE_AA, SHIFT)
-        if self.look.marks and len(marks := self.look.marks(snapshot)):
+        if len(marks := self.look.marks_at(snapshot)):
             paint_marks(image, self.pixels(np.array(marks, float).reshape(-1, 2)).reshape(-1, 2, 2))
         return image
 

@@ -7,16 +7,15 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Polygon, Rectangle
+from matplotlib.patches import Polygon, Rectangle
 
 from porescale.common.core.types import AnyArray
-from porescale.common.pictures.axes import draw_inside
-from porescale.common.pictures.layout import DPI, fit_ticks, scaled, tick_sizes
-from porescale.common.pictures.look import WALL, Look, Survey, View, length_unit, rgb, survey
+from porescale.common.pictures.axes import draw_inside, walls
+from porescale.common.pictures.layout import DPI, fit_ticks, kinds_of, pixels, scaled, tick_sizes
+from porescale.common.pictures.look import Look, Survey, View, length_unit, survey
 from porescale.common.record.model import Snapshot
 
 FONT = 10.0
@@ -124,11 +123,10 @@ def initial_figure(snapshot: Snapshot, shown: Initial) -> Figure:
     if shown.lens is not None:
         _magnified(axes, place.axes(figure, place.lens), snapshot, found, shown.lens)
     if shown.look.kinds:
-        patches = [Patch(facecolor=colour, label=label) for label, colour in shown.look.kinds.values()]
         x, y, _, _ = place.legend
         corner = x / place.width, 1 - y / place.height
-        figure.legend(handles=patches, loc="upper left", bbox_to_anchor=corner, fontsize=FONT, frameon=False,
-                      borderpad=0, borderaxespad=0)  # fmt: skip
+        figure.legend(handles=kinds_of(shown.look), loc="upper left", bbox_to_anchor=corner, fontsize=FONT,
+                      frameon=False, borderpad=0, borderaxespad=0)  # fmt: skip
     fit_ticks(figure, [axes])
     return figure
 
@@ -144,9 +142,7 @@ def _present(snapshot: Snapshot, look: Look) -> Look:
 
 def initial_pixels(snapshot: Snapshot, shown: Initial) -> AnyArray:
     """`initial_figure` as (height, width, 3) uint8 RGB."""
-    canvas = FigureCanvasAgg(initial_figure(snapshot, shown))
-    canvas.draw()
-    return np.array(np.asarray(canvas.buffer_rgba())[..., :3])
+    return pixels(initial_figure(snapshot, shown))
 
 
 def _with_room(view: View) -> View:
@@ -162,9 +158,7 @@ def _state(snapshot: Snapshot, found: Survey, axes: Axes, factor: float) -> None
         left, right, bottom, top = scaled(grid.extent, factor)
         axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, facecolor=WATER, zorder=0))
         if found.look.walls in grid.cells:
-            grey = np.zeros((*grid.shape, 4))
-            grey[..., :3] = np.array(rgb(WALL)) / 255
-            grey[..., 3] = 0.7 * np.clip(grid.cells[found.look.walls], 0.0, 1.0)
+            grey = walls(grid, found.look, 0.7)
             axes.imshow(grey, extent=(left, right, bottom, top), origin="lower", interpolation="nearest", zorder=0.5)
     draw_inside(snapshot, found, axes)
 

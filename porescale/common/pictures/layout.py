@@ -21,7 +21,8 @@ from matplotlib.patches import Patch
 from matplotlib.textpath import text_to_path
 from matplotlib.ticker import FixedLocator, MaxNLocator, ScalarFormatter
 
-from porescale.common.pictures.look import Scale, Survey, View, length_unit
+from porescale.common.core.types import AnyArray
+from porescale.common.pictures.look import Look, Scale, Survey, View, length_unit
 
 MM, DPI = 1 / 25.4, 100
 LEFT, RIGHT, BOTTOM = 5.1, 1.4, 4.2
@@ -268,7 +269,7 @@ def _keys(made: Stage, found: Survey, plan: _Plan) -> None:
     font = plan.font
     x0, y0, _, _ = plan.boxes[0]
     right, low = (max(box[k] + box[k + 2] for box in plan.boxes) for k in (0, 1))
-    patches = [Patch(facecolor=colour, label=label) for label, colour in found.look.kinds.values()]
+    patches = kinds_of(found.look)
     how: Any = {"handles": patches, "frameon": False, "handlelength": 1.0, "fontsize": made.font, "borderpad": 0.0,
                 "borderaxespad": 0.0}  # fmt: skip
     at = right + 1.3 * font if plan.upright else plan.foot
@@ -283,6 +284,11 @@ def _keys(made: Stage, found: Survey, plan: _Plan) -> None:
         corner = (at, y0) if plan.upright else (x0, at + 0.3 * font)
         where = corner[0] / made.full[0], 1 - corner[1] / made.full[1]
         made.figure.legend(loc="upper left", bbox_to_anchor=where, **how)
+
+
+def kinds_of(look: Look) -> list[Patch]:
+    """What a legend shows of the kinds of a look."""
+    return [Patch(facecolor=colour, label=label) for label, colour in look.kinds.values()]
 
 
 def draw_bar(figure: Any, scale: Scale, axes: Axes, font: float, *, lying: bool = False) -> None:
@@ -354,6 +360,13 @@ def scaled(view: View, factor: float) -> View:
     return left * factor, right * factor, bottom * factor, top * factor
 
 
-def even(pixels: float) -> int:
+def pixels(figure: Figure, *, alpha: bool = False) -> AnyArray:
+    """A figure as (height, width, 3) uint8 RGB, or RGBA."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.array(np.asarray(canvas.buffer_rgba())[..., : 4 if alpha else 3])
+
+
+def even(dots: float) -> int:
     """The even number at or above: films need even sides."""
-    return 2 * int(np.ceil(pixels / 2))
+    return 2 * int(np.ceil(dots / 2))

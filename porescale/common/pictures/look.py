@@ -96,6 +96,14 @@ class Look:
         grid = snapshot.grids.get(self.grid)
         return grid if grid is not None and self.field in grid.cells else None
 
+    def lines_at(self, snapshot: Snapshot) -> Sequence[Line]:
+        """The segments of a snapshot."""
+        return self.lines(snapshot) if callable(self.lines) else self.lines
+
+    def marks_at(self, snapshot: Snapshot) -> Sequence[Line]:
+        """The marks of a snapshot."""
+        return self.marks(snapshot) if self.marks is not None else ()
+
     def drawn(self, snapshot: Snapshot) -> Cloud | None:
         """The cloud to draw, if the snapshot has it."""
         if self.cloud is None:
@@ -148,6 +156,12 @@ def magnitude(values: AnyArray, axes: int) -> AnyArray:
     return values if values.dtype.kind == "f" else values.astype(np.float64)
 
 
+def colour_table(map_name: str) -> AnyArray:
+    """The 256 RGB rows, uint8, of a colour map of matplotlib."""
+    table: AnyArray = (matplotlib.colormaps[map_name](np.arange(256) / 255.0)[:, :3] * 255 + 0.5).astype(np.uint8)
+    return table
+
+
 def scale(
     name: str, units: str, sample: AnyArray, limits: Limits | None, map_name: str, label: str, noise: float = 0.0
 ) -> Scale:
@@ -177,13 +191,11 @@ def scale(
     if not high > low:
         high = low + (abs(low) or 1.0) * 1e-3
     chosen = map_name or (DIVERGING if signed else SEQUENTIAL)
-    table = (matplotlib.colormaps[chosen](np.arange(256) / 255.0)[:, :3] * 255 + 0.5).astype(np.uint8)
     factor, prefixed = _prefix(units, max(abs(low), abs(high)) if uniform is None else abs(uniform))
     shown = label or ("speed" if name == "velocity" else name.replace("_", " "))
     text = f"{shown} ({prefixed})" if prefixed else shown
-    return Scale(
-        table, float(low), float(high), text if uniform is None else f"{text}, uniform", factor, chosen, uniform
-    )
+    label = text if uniform is None else f"{text}, uniform"
+    return Scale(colour_table(chosen), float(low), float(high), label, factor, chosen, uniform)
 
 
 def round_off(snapshot: Snapshot, look: Look, length: float) -> dict[str, float]:

@@ -10,13 +10,13 @@ from typing import Any
 
 import cv2
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from porescale.common.core.atomic import write_bytes
+from porescale.common.core.picked import every_so_many, spread
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.canvas import Canvas
-from porescale.common.pictures.layout import DPI, Style, screen, stage
+from porescale.common.pictures.layout import DPI, Style, pixels, screen, stage
 from porescale.common.pictures.look import Look, Survey, survey, time_text
 from porescale.common.record.model import Snapshot
 from porescale.common.record.open_run import Run, open_run
@@ -26,6 +26,8 @@ CALM = 0.01
 SURVEYED = 24
 """At most so many snapshots are looked at for the colours' range."""
 
+TIMES = 6
+"""Panels of a montage."""
 WIDER = 1.25
 """How much longer a montage may be than a picture of one time."""
 FINER = 3
@@ -45,7 +47,7 @@ class Sheet:
         made = stage(found, [name + longest for name in self.names], style, blank=True)
         self.full, self.boxes, self.font = made.full, made.boxes, made.font
         self.canvas = Canvas(found, *made.boxes[0][2:])
-        self.background = _pixels(made.figure)
+        self.background = pixels(made.figure)
 
     def paint(self, shown: Sequence[Snapshot], over_field: AnyArray | None = None) -> AnyArray:
         """The whole picture of a snapshot for each panel; ``over_field`` as in :meth:`Canvas.draw`."""
@@ -96,7 +98,7 @@ class Painter:
         axes.streamplot(x, y, velocity[..., 0], velocity[..., 1], **lines)
         axes.set(xlim=self.survey.view[:2], ylim=self.survey.view[2:])
         axes.axis("off")
-        return self.paint(snapshot, _pixels(figure, alpha=True))
+        return self.paint(snapshot, pixels(figure, alpha=True))
 
 
 def paint(snapshot: Snapshot, look: Look | None = None, **changes: Any) -> AnyArray:
@@ -114,8 +116,7 @@ def painter_of(run: Run, look: Look) -> Painter:
 
 def surveyed(run: Run) -> list[int]:
     """Numbers of the snapshots that colours are taken from."""
-    every = max(1, -(-len(run) // SURVEYED))
-    return sorted({*range(0, len(run), every), len(run) - 1})
+    return every_so_many(len(run), max(1, -(-len(run) // SURVEYED)))
 
 
 def pictures(run: Run, painter: Painter) -> list[Path]:
@@ -123,9 +124,8 @@ def pictures(run: Run, painter: Painter) -> list[Path]:
     cells = painter.survey.look.cells
     last = run.snapshot(-1, cells)
     made = {"final.png": painter.paint(last)}
-    times = np.unique(np.linspace(0, len(run) - 1, 6).round().astype(int))
-    if len(times) > 1:
-        made["montage.png"] = montage(painter, list(run.snapshots(cells, times.tolist())))
+    if len(run) > 1:
+        made["montage.png"] = montage(painter, list(run.snapshots(cells, spread(len(run), TIMES))))
     if painter.survey.look.streamlines:
         made["streamlines.png"] = painter.streamlines(last)
     for name, image in made.items():
@@ -147,7 +147,7 @@ def montage(painter: Painter, shown: Sequence[Snapshot]) -> AnyArray:
     found = painter.survey
     times = [time_text(it.time, found.longest, found.look.plain) for it in shown]
     made = stage(found, times, screen(found.look.size, WIDER))
-    image = _pixels(made.figure)
+    image = pixels(made.figure)
     width, height = made.boxes[0][2:]
     canvas = Canvas(found, FINER * width, FINER * height)
     for snapshot, (x, y, _, _) in zip(shown, made.boxes, strict=True):
@@ -174,11 +174,4 @@ def _text(text: str, points: float, dpi: int) -> AnyArray:
     """Text in the axes' font on white, as a tight RGB image."""
     figure = Figure((0.75 * len(text) * points / 72, 1.6 * points / 72), dpi=dpi)
     figure.text(1.0, 0.25, text, fontsize=points, ha="right", va="baseline", parse_math=False)
-    return _pixels(figure)
-
-
-def _pixels(figure: Figure, *, alpha: bool = False) -> AnyArray:
-    """A figure as RGB, or RGBA."""
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    return np.array(np.asarray(canvas.buffer_rgba())[..., : 4 if alpha else 3])
+    return pixels(figure)

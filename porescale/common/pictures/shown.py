@@ -1,12 +1,12 @@
 """Pictures and films as values that notebooks display."""
 
-from base64 import b64encode
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.html import data_url
 from porescale.common.core.types import AnyArray
 
 LARGEST = 50 * 2**20
@@ -54,5 +54,5 @@ class Film:
     def _repr_html_(self) -> str:
         if self.path.stat().st_size > LARGEST:
             return escape(repr(self))
-        kind, content = self.path.suffix[1:], b64encode(self.path.read_bytes()).decode()
-        return f"<video controls loop style='max-width:100%' src='data:video/{kind};base64,{content}'></video>"
+        url = data_url(f"video/{self.path.suffix[1:]}", self.path.read_bytes())
+        return f"<video controls loop style='max-width:100%' src='{url}'></video>"

@@ -19,7 +19,7 @@ from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault
 from porescale.common.core.machine import machine
 from porescale.common.core.version import VERSION
-from porescale.common.record.read_card import FORMAT, NAME
+from porescale.common.record.read_card import FORMAT, NAME, short_commit
 
 RUNNING, FINISHED, INTERRUPTED, UNSTABLE, FAILED = "running", "finished", "interrupted", "unstable", "failed"
 FREE = (
@@ -117,10 +117,8 @@ def commit() -> dict[str, Any] | None:
 
 
 def mark() -> dict[str, str]:
-    """{"date", "commit"} of what is measured now, UTC: eight digits of the commit, with a + where files have changed
-    since; "" outside of a checkout."""
-    known = commit()
-    return {"date": now()[:10], "commit": known["hash"][:8] + "+" * known["changed"] if known else ""}
+    """{"date", "commit"} of what is measured now, UTC; the commit as of `short_commit`."""
+    return {"date": now()[:10], "commit": short_commit(commit())}
 
 
 def _git(root: Path, *words: str) -> str:
@@ -179,15 +177,3 @@ def changed_laws(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Fault]:
         )
         for key, law in now.items() if key in before and law["hash"] != before[key]["hash"]
     ]  # fmt: skip
-
-
-def has_key(scene: Any, key: str) -> bool:
-    """Whether a scene has a dotted key, whatever its value; "" is all of it."""
-    for part in key.replace("[", ".").replace("]", "").split(".") if key else ():
-        if isinstance(scene, list) and part.isdecimal() and int(part) < len(scene):
-            scene = scene[int(part)]
-        elif isinstance(scene, dict) and part in scene:
-            scene = scene[part]
-        else:
-            return False
-    return True

@@ -37,6 +37,12 @@ def missing(what: str, name: object, known: Iterable[str], where: str) -> Missin
     return MissingColumn(Fault(what, str(name), f"is not in {where}", repair=nearest(str(name), known, f"{what}s")))
 
 
+def split(column: str) -> tuple[str, str]:
+    """Name and unit of a column: "front (m)" is ("front", "m")."""
+    name, _, unit = column.rpartition(" (")
+    return (name, unit.removesuffix(")")) if name else (column, "")
+
+
 class Columns(Mapping[str, AnyArray]):
     """Columns of a table by name with unit ("time (s)", "front (m)"), each (rows,), in the file's order.
 

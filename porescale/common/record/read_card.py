@@ -2,6 +2,7 @@
 
 import json
 import operator
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,23 @@ def read_card(folder: Path, package: object = None) -> dict[str, Any]:
     if package is not None and whose is not None and whose != package:
         raise _fault(folder, f"holds a run of {whose}, not of {package}", f"use {whose}, or name another folder")
     return card
+
+
+def scene_folder(card: Mapping[str, Any]) -> Path | None:
+    """The folder that names of files in the scene of a ``card`` count from; None where it was made in Python."""
+    return Path(card["scene_file"]).parent if card.get("scene_file") else None
+
+
+def scene_end(card: Mapping[str, Any]) -> float | None:
+    """Time that the scene of a ``card`` is to simulate, s; None where it does not say so."""
+    times = card["scene"].get("time")
+    end = times.get("end") if isinstance(times, dict) else None
+    return end if isinstance(end, int | float) else None
+
+
+def short_commit(known: Mapping[str, Any] | None) -> str:
+    """Eight digits of the commit of a card, with a + where files had changed since; "" outside of a checkout."""
+    return known["hash"][:8] + "+" * known["changed"] if known else ""
 
 
 def require_format(place: Path, what: str, found: object, reads: int) -> None:

@@ -7,12 +7,11 @@ start.
 """
 
 import time as clock
-import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from porescale.common.core.errors import Fault, InputError, PorescaleError, PorescaleWarning
+from porescale.common.core.errors import Fault, InputError, PorescaleError, warn
 from porescale.common.core.machine import peak_bytes
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
@@ -27,6 +26,8 @@ from porescale.common.record.sampler import Sampler
 from porescale.common.record.schedule import Schedule
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import Series, require_length
+from porescale.common.schema.messages import parse_key
+from porescale.common.schema.scene_file import holds
 
 MADE_LATER = (
     "final.png", "montage.png", "streamlines.png", "vorticity.png", "stream_function.png", "film.mp4", "film.webm",
@@ -115,9 +116,7 @@ class Record:
         on = {"device": card["device"]} if "device" in card else {}
         card["resumed"] = [*card.get("resumed", []), {**reached, **on}]
         if changed:
-            what = ", ".join(changed)
-            text = f"resumed with other {what}: not promised to go on bit for bit"
-            warnings.warn(text, PorescaleWarning, stacklevel=2)
+            warn(f"resumed with other {', '.join(changed)}: not promised to go on bit for bit")
         card.update(outcome=cards.RUNNING, ended=None)
         card.pop("problem", None)
         cards.write_card(folder, card)
@@ -253,7 +252,7 @@ def check_changes(folder: Path, given: dict[str, Any], today: Today | None = Non
         problem, way = f"was {was!r}", f"resume with {was!r}, or "
         if was is None:
             problem, way = "was absent", "resume without it, or "
-        if not cards.has_key(old, key):
+        if key and not holds(old, parse_key(key)):
             problem = "the run was begun by a version without it"
             same = "leave it out" if was is None else f"set it to {was!r}"
             way = "" if whole is old else f"{same} to go on as that did, or "

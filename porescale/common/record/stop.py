@@ -2,9 +2,10 @@
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
 
 from porescale.common.core.errors import PorescaleError
 
@@ -45,19 +46,36 @@ def polite_stop() -> Iterator[StopRequest]:
         return
     before = {number: signal.getsignal(number) for number in polite_signals()}
 
-    def restore() -> None:
-        """Signals mean again what they did before."""
-        for number, handler in before.items():
-            signal.signal(number, handler if handler is not None else signal.SIG_DFL)
-
     def ask(number: int, frame: FrameType | None) -> None:
         """Note the first signal; a second one ends the process as it would have without this."""
         request.requested = True
-        restore()
+        _restore(before)
 
     for number in before:
         signal.signal(number, ask)
     try:
         yield request
     finally:
-        restore()
+        _restore(before)
+
+
+@contextmanager
+def interrupted_by(*numbers: signal.Signals) -> Iterator[None]:
+    """Within this the signals raise KeyboardInterrupt, also in the background, where shells have SIGINT ignored.
+
+    Nothing is changed outside the main thread.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, signal.default_int_handler) for number in numbers}
+    try:
+        yield
+    finally:
+        _restore(before)
+
+
+def _restore(before: Mapping[signal.Signals, Any]) -> None:
+    """Let signals mean again what they did before."""
+    for number, handler in before.items():
+        signal.signal(number, handler if handler is not None else signal.SIG_DFL)

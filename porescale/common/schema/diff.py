@@ -1,11 +1,11 @@
 """What differs between two scenes."""
 
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.html import html_table
+from porescale.common.record.read_card import scene_folder
 from porescale.common.schema.describe import clipped, differences
 from porescale.common.schema.messages import dotted
 from porescale.common.schema.sections import Section, validate
@@ -69,8 +69,7 @@ def _scene(given: Any, scene_type: type[Section]) -> Section:
         return given
     card = getattr(given, "card", None)
     if isinstance(card, Mapping) and isinstance(card.get("scene"), Mapping):
-        folder = Path(card["scene_file"]).parent if card.get("scene_file") else None
-        return validate(scene_type, card["scene"], folder=folder)
+        return validate(scene_type, card["scene"], folder=scene_folder(card))
     problem = "is neither a scene nor a run of this package"
     raise InputError(Fault("diff", type(given).__name__, problem, repair="load or open it first"))
 

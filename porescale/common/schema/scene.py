@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import pydantic
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.html import data_url
 from porescale.common.schema import scene_file
 from porescale.common.schema.describe import as_html, in_lines
 from porescale.common.schema.messages import Key, dotted, every_key, nearest
@@ -148,8 +148,8 @@ class SceneBase(Section):
         shown = "<p>picture() draws it</p>"
         if self.drawn_at_once:
             with suppress(InputError):  # `check` says what is wrong
-                content = b64encode(self.picture()._repr_png_()).decode()
-                shown = f"<img style='max-width:100%' src='data:image/png;base64,{content}'>"
+                url = data_url("image/png", self.picture()._repr_png_())
+                shown = f"<img style='max-width:100%' src='{url}'>"
         return {"text/plain": repr(self), "text/html": shown + self._repr_html_()}
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:

@@ -24,9 +24,10 @@ from porescale.common.record.read_card import read_card
 from porescale.common.record.series import run_table
 from porescale.common.schema.scene_file import find
 from porescale.common.schema.sections import load, validate
-from porescale.common.studies.front import Choice, Front, FrontPoint, begun, choose, percent, read_front
+from porescale.common.studies.front import Choice, Front, FrontPoint, begun, choose, read_front
 from porescale.common.studies.quantities import measured
 from porescale.common.studies.trade import rms
+from porescale.common.studies.trade_files import percent
 from porescale.common.studies.trade_plan import Quantity
 
 WITHIN = 0.3

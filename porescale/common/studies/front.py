@@ -23,7 +23,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.duration.quiet import moment, share
 from porescale.common.duration.threads import Threads
 from porescale.common.schema.scene_file import SCENE_FILE
-from porescale.common.studies.trade_files import FORMAT, FRONT
+from porescale.common.studies.trade_files import FORMAT, FRONT, percent
 
 WARM_UP = 3
 """Steps before a pace is taken: kernels compile, steps in place have two kinds."""
@@ -119,11 +119,6 @@ class Choice:
             f" in all here ({self.seconds / there:.2g} times the {there:.3g} core-seconds of {front.machine}, "
             f"{front.date})" + (f"; but {point.but}" if point.but else "")
         )
-
-
-def percent(share: float) -> str:
-    """A share in per cent, two digits."""
-    return f"{100 * share:.2g} %"
 
 
 def read_front(scene: Path, end: float | None = None) -> Front:

@@ -10,17 +10,15 @@ Points of which trade.toml says a ``but`` are left out: they are accurate in the
 """
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.schema.sections import load, scene_as_dict
-from porescale.common.studies.front import Front, FrontPoint, percent, point_of, read_front
-from porescale.common.studies.parameter_table import flat
+from porescale.common.studies.front import Front, FrontPoint, point_of, read_front
+from porescale.common.studies.parameter_table import changed, values_of
 from porescale.common.studies.trade import rms
+from porescale.common.studies.trade_files import percent
 
 APART = 20.0
 """A fine run costs at least so many times the core-seconds of a draft."""
@@ -58,27 +56,14 @@ def picked(front: Front) -> dict[str, FrontPoint]:
 
 def compared(package: Package, scene: Path) -> list[Picked]:
     """What the rule picks from the front beside the scene file, and where the levels of the scene differ from it."""
-    return [
-        Picked(
-            level,
-            point,
-            _differences(_tables(package, scene, level, ()), _tables(package, scene, point.quality, point.settings)),
-        )
-        for level, point in picked(read_front(scene)).items()
-    ]
+    made = []
+    for level, point in picked(read_front(scene)).items():
+        has, should = values_of(package, scene, (), level), values_of(package, scene, point.settings, point.quality)
+        wrong = (f"{key} = {has.get(key)}, the point {should.get(key)}" for key in changed(has, should))
+        made.append(Picked(level, point, tuple(wrong)))
+    return made
 
 
 def apart(rows: list[Picked]) -> float:
     """Core-seconds of fine over those of draft."""
     return rows[-1].point.core_seconds / rows[0].point.core_seconds
-
-
-def _tables(package: Package, scene: Path, quality: str | None, settings: tuple[str, ...]) -> dict[str, Any]:
-    return scene_as_dict(load(scene, package.scene(), quality=quality, overrides=settings))
-
-
-def _differences(has: Mapping[str, Any], should: Mapping[str, Any]) -> tuple[str, ...]:
-    """Keys in which two scenes differ."""
-    old, new = dict(flat(has)), dict(flat(should))
-    keys = sorted(key for key in old.keys() | new.keys() if old.get(key) != new.get(key))
-    return tuple(f"{key} = {old.get(key)}, the point {new.get(key)}" for key in keys)

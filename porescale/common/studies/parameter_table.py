@@ -19,11 +19,14 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.given_file import given_text
 from porescale.common.schema import scene_file
+
+if TYPE_CHECKING:
+    from porescale.common.api.program import Program
 
 AS_IT_IS = "as-it-is"
 """Name of the point that sets nothing."""
@@ -138,6 +141,18 @@ def flat(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]
             yield from flat(value, f"{key}.")
         else:
             yield key, value
+
+
+def values_of(program: Program, scene: Path, settings: Sequence[str], quality: str | None = None) -> dict[str, Any]:
+    """The value of every dotted key of the scene in a file, at a level, with ``settings`` over it."""
+    from porescale.common.schema.sections import load, scene_as_dict
+
+    return dict(flat(scene_as_dict(load(scene, program.scene(), quality=quality, overrides=settings))))
+
+
+def changed(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
+    """Keys whose values differ between two scenes, in order; of one that is only in one of them the other is None."""
+    return sorted(key for key in one.keys() | other.keys() if one.get(key) != other.get(key))
 
 
 def settings_of(table: Mapping[str, Any]) -> tuple[str, ...]:

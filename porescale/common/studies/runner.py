@@ -5,9 +5,7 @@ checkpoint.  A point that went unstable keeps that verdict until it is requested
 """
 
 import signal
-import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,6 +14,7 @@ from porescale.common.core.atomic import owned
 from porescale.common.core.errors import INTERRUPTED, Fault, InputError
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
+from porescale.common.record.stop import interrupted_by
 from porescale.common.studies.parameter_table import Point
 from porescale.common.studies.schedulers import progress
 from porescale.common.studies.schedulers.law import Scheduler
@@ -125,7 +124,7 @@ class Campaign:
         if not left:
             return
         rest = progress.of({name: self.place(point) for name, point in left.items()}, say)
-        with _terminable():
+        with interrupted_by(signal.SIGTERM):  # so that what runs is not left behind
             done = self.scheduler.run([self.task(point) for point in left.values()], jobs, rest)
             for number, each in enumerate(done, 1):
                 ended = self.ended(left[each.task.name], each)
@@ -133,17 +132,3 @@ class Campaign:
                 say(f"{ended.point.name}: {ended.outcome}, {ended.seconds:.3g} s "
                     f"({number} of {len(left)}, {rest.words()})")  # fmt: skip
                 yield ended
-
-
-@contextmanager
-def _terminable() -> Iterator[None]:
-    """SIGTERM as KeyboardInterrupt, so that what runs is not left behind; in the main thread only."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)

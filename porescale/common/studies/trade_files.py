@@ -8,7 +8,7 @@ from typing import Any
 from porescale.common.core.statistics import LEVEL, Sample
 from porescale.common.evidence import files
 from porescale.common.studies import ensemble_files
-from porescale.common.studies.trade import Traded
+from porescale.common.studies.trade import Traded, rms
 
 FRONT = "front.json"
 NAME = "trade"
@@ -75,13 +75,13 @@ def markdown(about: dict[str, Any], points: Sequence[Traded], packings: Mapping[
     rows, repeated = [], any(len(one.each) > 1 for one in points)
     for one in sorted(points, key=lambda each: each.core_seconds):
         label = f"**{one.label}**" if one.on_front else one.label
-        total = f"{_percent(one.error)} ± {_percent(one.scatter)}" if math.isfinite(one.error) else one.outcome
+        total = f"{percent(one.error)} ± {percent(one.scatter)}" if math.isfinite(one.error) else one.outcome
         cells = [label, f"{one.core_seconds:.3g}", f"{one.peak_bytes / 2**20:.0f}", total]
         cells += [_mean(one.sample)] * repeated
-        rows.append([*cells, *(_percent(one.errors[name]) for name in names)])
+        rows.append([*cells, *(percent(one.errors[name]) for name in names)])
     if packings:
         cells = ["another packing, finest", "", "", "", *[""] * repeated]
-        rows.append([*cells, *(_percent(packings.get(name, math.nan)) for name in names)])
+        rows.append([*cells, *(percent(packings.get(name, math.nan)) for name in names)])
     header = ["point", "core-seconds", "memory, MiB", "error ± scatter"]
     header += [f"mean error ± {100 * LEVEL:g} %"] * repeated + names
     return "\n".join([*parts, *files.markdown_table(header, rows), *_references(about)]) + "\n"
@@ -91,7 +91,7 @@ def _mean(sample: Sample) -> str:
     """A mean error with half of Student's interval, and of how many it is."""
     if not math.isfinite(sample.half):
         return f"no interval of {len(sample.values)}"
-    return f"{_percent(sample.mean)} ± {_percent(sample.half)} of {len(sample.values)}"
+    return f"{percent(sample.mean)} ± {percent(sample.half)} of {len(sample.values)}"
 
 
 def _references(about: Mapping[str, Any]) -> list[str]:
@@ -110,7 +110,8 @@ def _references(about: Mapping[str, Any]) -> list[str]:
     return ["", *files.markdown_table(header, rows)] if rows else []
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """A share in per cent, two digits; a dash for what is no number."""
     return f"{100 * share:.2g} %" if math.isfinite(share) else "–"
 
 
@@ -132,8 +133,8 @@ def picture(points: Sequence[Traded], packings: Mapping[str, float], dear: float
         axes.annotate(one.label, (one.core_seconds, 100 * one.error), (4, 4), textcoords="offset points", fontsize=6.5,
                       color="black" if one.on_front else "grey")  # fmt: skip
     if packings:
-        floor = (sum(value**2 for value in packings.values()) / len(packings)) ** 0.5
-        axes.axhline(100 * floor, color="grey", linestyle=":", linewidth=0.9, label="another packing")
+        floor = 100 * rms(list(packings.values()))
+        axes.axhline(floor, color="grey", linestyle=":", linewidth=0.9, label="another packing")
     if dear:
         axes.axvline(dear, color="grey", linestyle="--", linewidth=0.9, label="what errors are held against")
     axes.set_xscale("log")

@@ -15,7 +15,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.record import snapshots, vtkhdf
 from porescale.common.record.columns import TIME
 from porescale.common.record.read_card import NAME as CARD
-from porescale.common.record.read_card import read_card
+from porescale.common.record.read_card import read_card, scene_end
 from porescale.common.record.series import NAME as SERIES
 
 if TYPE_CHECKING:
@@ -71,8 +71,6 @@ class Growing:
         if identity is not None and (identity != begun or steps[: len(old_steps)] != old_steps or shorter):
             self._epoch += 1
         self._seen = begun, steps, tables
-        times = run.card["scene"].get("time")
-        end = times.get("end") if isinstance(times, dict) else None
         reached = last_value(self.folder / SERIES) if SERIES[:-4] in tables else None
         return {
             "epoch": self._epoch,
@@ -81,7 +79,7 @@ class Growing:
             "outcome": run.card.get("outcome") or "",
             "problem": run.card.get("problem") or "",
             "time": reached,
-            "end": end if isinstance(end, int | float) else None,
+            "end": scene_end(run.card),
             "age": self._age(),
         }
 

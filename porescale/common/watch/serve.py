@@ -7,12 +7,11 @@ import signal
 import sys
 import threading
 import webbrowser
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.stop import interrupted_by
 from porescale.common.watch.server import Server
 from porescale.common.watch.site import Site, kind_of
 
@@ -34,7 +33,7 @@ def watch(folder: Path, program: Program, *, port: int = 0, wait: bool = False, 
     kind_of(folder)
     with Server(Site(folder, program), port) as server:
         try:
-            with _stoppable():
+            with interrupted_by(signal.SIGINT, signal.SIGTERM):
                 print(f"watch {folder} at {server.link} (Ctrl-C ends it)", flush=True)
                 if show and _has_screen():
                     threading.Thread(target=webbrowser.open, args=(server.link,), daemon=True).start()
@@ -42,18 +41,6 @@ def watch(folder: Path, program: Program, *, port: int = 0, wait: bool = False, 
         except KeyboardInterrupt:
             server.reading.acquire(timeout=READING)
     print("no longer watched; the run itself was not touched")
-
-
-@contextmanager
-def _stoppable() -> Iterator[None]:
-    """Ctrl-C and SIGTERM as KeyboardInterrupt, also in the background, where shells have them ignored."""
-    names = (signal.SIGINT, signal.SIGTERM)
-    before = [signal.signal(name, signal.default_int_handler) for name in names]
-    try:
-        yield
-    finally:
-        for name, handler in zip(names, before, strict=True):
-            signal.signal(name, handler)
 
 
 def _has_screen() -> bool:

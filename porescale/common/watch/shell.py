@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 from html import escape
-from importlib.resources import files
 
 from porescale.common.page.page import script
 from porescale.common.page.scripts import filled, joined
@@ -39,7 +38,6 @@ def css() -> str:
     return of_report("page.css") + static("live.css")
 
 
-@cache
 def static(name: str) -> str:
     """The text of a file of these pages."""
-    return files("porescale.common.watch").joinpath("static", name).read_text(encoding="utf-8")
+    return of_report(name, "porescale.common.watch")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from urllib.parse import quote
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import InputError
+from porescale.common.core.html import data_url
 from porescale.common.page.page import NAME, compact
 from porescale.common.page.scripts import filled
 from porescale.common.page.tables import table
@@ -56,7 +56,7 @@ def _data(points: Points, target: Path) -> dict[str, Any]:
         picture = points.picture(name) if row["picture"] else None
         row["picture"] = picture is not None
         if picture:
-            pictures[name] = f"data:image/png;base64,{b64encode(picture).decode()}"
+            pictures[name] = data_url("image/png", picture)
     for one in answers["ensembles"]:
         answers[f"band/{quote(one['name'], safe=SAFE)}"] = points.band(one["name"])
     return {"json": answers, "pages": pages, "pictures": pictures}

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_text
+from porescale.common.core.html import data_url
 from porescale.common.core.types import AnyArray
 from porescale.common.page.scripts import filled, joined, static
 from porescale.piv.estimate.advice import Pair
@@ -90,7 +91,7 @@ def _address(grey: NDArray[np.uint8], quality: int | None) -> str:
     """A picture as a data: address."""
     kind, options = ("png", []) if quality is None else ("jpeg", [cv2.IMWRITE_JPEG_QUALITY, quality])
     content = cv2.imencode(f".{kind}", grey, options)[1].tobytes()
-    return f"data:image/{kind};base64,{b64encode(content).decode()}"
+    return data_url(f"image/{kind}", content)
 
 
 def _maps() -> dict[str, str]:

@@ -13,7 +13,7 @@ import pytest
 
 from porescale.common.api.open_run import open_run
 from porescale.common.core.errors import InputError
-from porescale.common.page.frames import frame, kept
+from porescale.common.page.frames import frame
 from porescale.common.page.meta import meta
 from porescale.common.page.page import NAME, SCRIPTS, fitting, report, script, write_report
 from porescale.common.page.quantise import Precision
@@ -164,9 +164,6 @@ def test_large_runs_are_held_more_coarsely(run):
     assert finest == Precision(16)
     thin = fitting(run, 0.19)  # less than what the scripts take: nothing is left for frames
     assert (thin.bits, thin.every) == (8, 4)
-    assert kept(10, 4) == [0, 4, 8, 9]
-    assert kept(9, 4) == [0, 4, 8]
-    assert kept(0, 4) == []
     assert meta(run, Precision(thin=3))["times"] == run.times[[0, 3, 4]].tolist()
     assert frame(run, 1, Precision(thin=3)) == frame(run, 3)
 

@@ -14,6 +14,8 @@ from porescale.common.core.errors import InputError
 from porescale.common.record import card
 from porescale.common.record.record import check_changes
 from porescale.common.record.series import Series, read_series
+from porescale.common.schema.messages import parse_key
+from porescale.common.schema.scene_file import holds
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -154,9 +156,9 @@ def test_changed_keys_of_lists_of_tables_are_those_of_the_entry():
     assert card.changed_keys({"body": old}, {"body": new}) == {"body[1].hue": (None, 3.0)}
     assert card.changed_keys({"body": old}, {"body": old[:1]}) == {"body": (old, old[:1])}
     assert card.changed_keys({"body": [1, 2]}, {"body": [1, 3]}) == {"body": ([1, 2], [1, 3])}
-    assert card.has_key({"body": old}, "body[1].hue")
-    assert not card.has_key({"body": old}, "body[2].hue")
-    assert not card.has_key({"body": old}, "body[1].x.y")
+    assert holds({"body": old}, parse_key("body[1].hue"))
+    assert not holds({"body": old}, parse_key("body[2].hue"))
+    assert not holds({"body": old}, parse_key("body[1].x.y"))
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from porescale.common.core.errors import InputError
 from porescale.common.record.progress import duration
-from porescale.common.record.read_card import read_card
+from porescale.common.record.read_card import read_card, scene_end
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.watch.growing import last_value
 
@@ -15,13 +15,11 @@ from porescale.common.watch.growing import last_value
 def share_done(folder: Path) -> float | None:
     """How much of a run is done, 0 to 1, as its card and its last row say; None where they do not."""
     try:
-        scene = read_card(folder)["scene"]
+        end = scene_end(read_card(folder))
     except (InputError, OSError):
         return None
-    times = scene.get("time")
-    end = times.get("end") if isinstance(times, dict) else None
     reached = last_value(folder / SERIES)
-    if reached is None or not isinstance(end, int | float) or end <= 0:
+    if reached is None or end is None or end <= 0:
         return None
     return min(max(reached / end, 0.0), 1.0)
 
