@@ -9,7 +9,7 @@ from matplotlib.collections import EllipseCollection, LineCollection, PolyCollec
 
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.arrows import arrows
-from porescale.common.pictures.layout import draw_bar, fit_ticks, kinds_of, scaled
+from porescale.common.pictures.layout import along, draw_bar, fit_ticks, kinds_of, scaled
 from porescale.common.pictures.look import (
     PAPER,
     PLATE,
@@ -46,8 +46,8 @@ def draw(snapshot: Snapshot, look: Look, axes: Axes, *, bar: bool = True) -> Axe
     """
     found = survey([snapshot], look)
     _, unit = length_unit(found.view, look.plain)
-    axes.set_xlabel(f"x ({unit})" if unit else "x")
-    axes.set_ylabel(f"y ({unit})" if unit else "y")
+    axes.set_xlabel(along("x", unit))
+    axes.set_ylabel(along("y", unit))
     left, right, bottom, top = found.view
     time = time_text(snapshot.time, found.longest, look.plain)
     if right - left < NARROW * (top - bottom):

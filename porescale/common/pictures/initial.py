@@ -14,7 +14,7 @@ from matplotlib.patches import Polygon, Rectangle
 
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.axes import draw_inside, walls
-from porescale.common.pictures.layout import DPI, fit_ticks, kinds_of, pixels, scaled, tick_sizes
+from porescale.common.pictures.layout import DPI, along, fit_ticks, kinds_of, pixels, scaled, tick_sizes
 from porescale.common.pictures.look import Look, Survey, View, length_unit, survey
 from porescale.common.record.model import Snapshot
 
@@ -108,8 +108,8 @@ def initial_figure(snapshot: Snapshot, shown: Initial) -> Figure:
     factor, unit = length_unit(found.view, shown.look.plain)
     _state(snapshot, found, axes, factor)
     axes.tick_params(**tick_sizes(FONT))
-    axes.set_xlabel(f"x ({unit})", fontsize=FONT)
-    axes.set_ylabel(f"y ({unit})", fontsize=FONT)
+    axes.set_xlabel(along("x", unit), fontsize=FONT)
+    axes.set_ylabel(along("y", unit), fontsize=FONT)
     axes.spines[:].set_visible(False)
     if place.lying:  # leaders go down from the box
         axes.xaxis.tick_top()

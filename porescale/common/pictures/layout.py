@@ -234,9 +234,14 @@ def _dress(axes: Axes, found: Survey, font: float, *, x_label: bool, y_label: bo
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(ScalarFormatter(useOffset=False))
     if x_label:
-        axes.set_xlabel(f"x ({unit})" if unit else "x", fontsize=font, labelpad=0.4 * font)
+        axes.set_xlabel(along("x", unit), fontsize=font, labelpad=0.4 * font)
     if y_label:
-        axes.set_ylabel(f"y ({unit})" if unit else "y", fontsize=font, labelpad=0.4 * font)
+        axes.set_ylabel(along("y", unit), fontsize=font, labelpad=0.4 * font)
+
+
+def along(axis: str, unit: str) -> str:
+    """What stands at an axis, "x" or "y": with its unit, where places have one."""
+    return f"{axis} ({unit})" if unit else axis
 
 
 def tick_sizes(font: float) -> dict[str, Any]:

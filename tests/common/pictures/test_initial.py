@@ -1,5 +1,6 @@
 """A scene before it runs: all that it has stands in the picture with a label, none upon another."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -134,3 +135,10 @@ def test_a_look_at_what_is_not_recorded_is_refused():
         with pytest.raises(InputError, match=said):
             ps.Scene(**tables, look=look)
     assert ps.Scene(**tables, look={"field": "pressure", "view": ["1 cm", "2 cm", 0, 0.01]}).look.view[0] == 0.01
+
+
+@pytest.mark.parametrize(("plain", "unit"), [(True, ""), (False, " (cm)")])
+def test_axes_have_units_where_places_do(plain, unit):
+    snapshot, look = built(0.1, 0.1)
+    axes = initial_figure(snapshot, Initial(replace(look, plain=plain), [])).axes[0]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (f"x{unit}", f"y{unit}")
