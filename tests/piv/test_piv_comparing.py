@@ -118,3 +118,25 @@ def test_a_run_is_compared_with_the_film_of_it(tmp_path, monkeypatch, capsys):
     for tokens in (["film.mp4", str(folder)], [str(folder), str(folder), "--factor", "0.5"]):
         assert main(commands(), ["piv", "compare", *tokens]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_it_is_said_which_moments_are_compared_and_none_beyond_the_run_is(tmp_path, monkeypatch, capsys):
+    def told(*words):
+        """Exit code, standard output and error of a comparison of two runs, of 0 to 0.1 s and of 0 to 0.2 s."""
+        code = main(commands(), ["piv", "compare", str(tmp_path / "a"), str(tmp_path / "b"), *words])
+        return code, *capsys.readouterr()
+
+    for name, count in (("a", 2), ("b", 3)):
+        for k in range(count):
+            snapshots.write_part(tmp_path / name, turning(0.1 * k, k))
+    opened = "porescale.piv.fields.of_run.open_run"
+    monkeypatch.setattr(opened, lambda folder: Run(folder, {"name": "turning"}, snapshots.catalogue(folder)))
+    code, out, err = told()
+    assert (code, out.splitlines()[0]) == (0, f"{tmp_path / 'a'} at 0.1 s, {tmp_path / 'b'} at 0.2 s")
+    assert err == "warning: the last fields are of 0.1 and 0.2 s; --time picks one moment of both\n"
+    code, out, err = told("--time", "0.09")
+    assert (code, err) == (0, "")
+    assert out.startswith(f"{tmp_path / 'a'} at 0.1 s, {tmp_path / 'b'} at 0.1 s\n")
+    code, out, err = told("--time", "0.5")
+    assert (code, out) == (2, "")
+    assert err == f"--time = 0.5 s: is beyond what {tmp_path / 'a'} has (allowed: 0 to 0.1 s)\n"

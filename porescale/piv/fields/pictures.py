@@ -29,9 +29,7 @@ def quiver(
         axes.imshow(image, cmap="gray", vmin=0, vmax=1.3 * high, extent=whole, aspect="equal", interpolation="nearest")
     fast = draw_arrows(axes, field, over_image=image is not None)
     unit = "m/s" if field.upwards else "px a frame"
-    axes.set_title(
-        f"displacement; longest arrows {fast:.3g} {unit}" if not field.upwards else f"velocity; {fast:.3g} {unit}"
-    )
+    axes.set_title(f"{'velocity' if field.upwards else 'displacement'}; longest arrows {fast:.3g} {unit}")
     return _saved(figure, path)
 
 
