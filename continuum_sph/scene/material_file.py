@@ -49,21 +49,21 @@ class Known(Section):
 
 
 class Taken(Section):
-    """[soil] of the file: what goes into [soil] of a scene, whose ranges hold."""
+    """[soil] of the file: what goes into [soil] of a scene, with the ranges there: a fault then names this file."""
 
-    density: float = quantity("kg/m^3", gt=0)
-    porosity: float = quantity("", ge=0, lt=1)
-    stiffness: float | None = quantity("Pa", None, gt=0)
-    reference: float | None = quantity("Pa", None, gt=0)
+    density: float = quantity("kg/m^3", ge=1, le=1e5)
+    porosity: float = quantity("", ge=0, le=0.99)
+    stiffness: float | None = quantity("Pa", None, ge=1, le=1e12)
+    reference: float | None = quantity("Pa", None, ge=1e-3, le=1e12)
     exponent: float | None = quantity("", None, ge=0, le=1)
-    poisson: float | None = quantity("", None, ge=0, lt=0.5)
+    poisson: float | None = quantity("", None, ge=0, le=0.49)
 
 
 class Strength(Section):
     """Friction and dilatancy angle of the soil in one state."""
 
-    friction_angle: float = quantity("rad", ge=0)
-    dilatancy_angle: float = quantity("rad", ge=0)
+    friction_angle: float = quantity("rad", ge=0, le=1.4)
+    dilatancy_angle: float = quantity("rad", ge=0, le=1.4)
 
 
 class Strengths(Section):
@@ -84,7 +84,7 @@ class Pores(Section):
 class SofteningLaw(Section):
     """[softening] of the file: what it holds of [soil.softening]; widths of shear bands no packing shows."""
 
-    friction_angle: float = quantity("rad", ge=0)
+    friction_angle: float = quantity("rad", ge=0, le=1.4)
     shear_strain: float = quantity("", gt=0)
 
 

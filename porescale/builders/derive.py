@@ -8,16 +8,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from porescale.builders.checks.contact import material_doubts, wall_friction_doubts
+from porescale.builders.checks.contact import angles_for_friction, material_doubts, wall_friction_doubts
 from porescale.builders.checks.discs_alone import left_out, uncertain_films
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
 from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
-from porescale.builders.checks.packing import beside_the_bed, check_compressed, unused_spread
+from porescale.builders.checks.packing import beside_the_bed, check_compressed, too_soft_for_weight, unused_spread
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.builders.checks.prescribed import check_controls, check_motions
 from porescale.builders.checks.regime import check_regime, expected_speed, too_soft, travel_step
-from porescale.builders.checks.wall_places import hammering
+from porescale.builders.checks.wall_places import hammering, stays_shut
 from porescale.builders.initial.clumps import lightest, undisplaced_clumps
 from porescale.builders.initial.contact_laws import MaterialPlan, densities_of_bodies, law_class
 from porescale.builders.initial.frames import Placed, lightest_frame, longest_of, placed_frames, sizes_of
@@ -90,7 +90,7 @@ def derive(scene: Scene) -> Derived:
         smallest = math.pi / 4 * sizes[0] ** 2 * least, sizes[0] / 2
         mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
         law, wall_law, every = plan.law_and_others(packing.material if packing else "", mean_mass)
-        warnings += [*material_doubts(scene), *wall_friction_doubts(scene)]
+        warnings += [*material_doubts(scene), *wall_friction_doubts(scene), *angles_for_friction(scene)]
         check_own_contact(scene.contact, every, *smallest)
         warnings += filter(None, [energy_of_mass(scene, every, *smallest)])
         if scene.clump:
@@ -123,7 +123,8 @@ def derive(scene: Scene) -> Derived:
                 f"thickness, where a run stops; {SAFETY * travel:.2g} s is safe"
             )
         warnings += filter(None, [too_soft(scene, scales, sizes, (law, wall_law), frames)])
-        warnings += hammering(scene, mean_mass, sizes[1], wall_law)
+        warnings += [*too_soft_for_weight(scene, law), *hammering(scene, mean_mass, sizes[1], wall_law)]
+        warnings += stays_shut(scene, sizes[1])
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and law and scene.grains:

@@ -160,7 +160,7 @@ def compare(
     from porescale.piv import given
     from porescale.piv.fields.compare import ALIGNED
     from porescale.piv.fields.compare import compare as compare_fields
-    from porescale.piv.fields.of_run import surface_of_run
+    from porescale.piv.fields.of_run import moment_of_run, surface_of_run
     from porescale.piv.fields.pictures import comparison
 
     if out is not None:
@@ -169,8 +169,12 @@ def compare(
     bounds = (("--factor", factor, 1.0), ("--within", within, 0.0), ("--error", error, 0.0))
     given.refuse(*(given.within(key, it, Range(gt=least)) for key, it, least in bounds if it is not None))
     first, second = _field(reference, moment), _field(other, moment)
+    moments = [moment_of_run(path, moment) if path.is_dir() else None for path in (reference, other)]
     one, two = (surface_of_run(path, first.x, moment) if path.is_dir() else None for path in (reference, other))
     found = compare_fields(first, second, within, factor, (one, two), error)
+    if moment is None and None not in moments and moments[0] != moments[1]:
+        print(f"warning: the last fields are of {moments[0]:g} and {moments[1]:g} s; --time picks one moment of both",
+              file=sys.stderr)  # fmt: skip
     text = json_text.dumps(finite(found.as_dict()), indent=1, allow_nan=False)
     if out is not None:
         write_text(out / "compare.json", text + "\n")
@@ -179,6 +183,8 @@ def compare(
         print(text)
         return 0
     unit, area = ("m/s", "m²/s") if first.upwards else ("px a frame", "px² a frame")
+    if said := [f"{path} at {it:g} s" for path, it in zip((reference, other), moments, strict=True) if it is not None]:
+        print(", ".join(said))
     print(f"{found.points} points, rms speed of the reference {found.speed:.4g} {unit}")
     print(f"difference over it: rms {found.rms:.4g}, largest {found.largest:.4g}")
     print(f"bias over it: u {found.bias_u:.3g}, v {found.bias_v:.3g}")

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from porescale.cli.main import commands
 from porescale.common.cli.application import main
@@ -12,9 +13,9 @@ from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.common.record.open_run import Run
 from porescale.piv.estimate.measure import measure
 from porescale.piv.estimate.series import as_grid
-from porescale.piv.fields import surface
+from porescale.piv.fields import pictures, surface
 from porescale.piv.fields.compare import compare
-from porescale.piv.fields.field import in_metres, in_pixels
+from porescale.piv.fields.field import Field, in_metres, in_pixels
 from porescale.piv.fields.of_run import field_of_run, surface_of_run
 from porescale.piv.fields.vortices import Vortex, matched
 from porescale.piv.images import flows
@@ -118,3 +119,41 @@ def test_a_run_is_compared_with_the_film_of_it(tmp_path, monkeypatch, capsys):
     for tokens in (["film.mp4", str(folder)], [str(folder), str(folder), "--factor", "0.5"]):
         assert main(commands(), ["piv", "compare", *tokens]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_it_is_said_which_moments_are_compared_and_none_beyond_the_run_is(tmp_path, monkeypatch, capsys):
+    def told(*words):
+        """Exit code, standard output and error of a comparison of two runs, of 0 to 0.1 s and of 0 to 0.2 s."""
+        code = main(commands(), ["piv", "compare", str(tmp_path / "a"), str(tmp_path / "b"), *words])
+        return code, *capsys.readouterr()
+
+    for name, count in (("a", 2), ("b", 3)):
+        for k in range(count):
+            snapshots.write_part(tmp_path / name, turning(0.1 * k, k))
+    opened = "porescale.piv.fields.of_run.open_run"
+    monkeypatch.setattr(opened, lambda folder: Run(folder, {"name": "turning"}, snapshots.catalogue(folder)))
+    code, out, err = told()
+    assert (code, out.splitlines()[0]) == (0, f"{tmp_path / 'a'} at 0.1 s, {tmp_path / 'b'} at 0.2 s")
+    assert err == "warning: the last fields are of 0.1 and 0.2 s; --time picks one moment of both\n"
+    code, out, err = told("--time", "0.09")
+    assert (code, err) == (0, "")
+    assert out.startswith(f"{tmp_path / 'a'} at 0.1 s, {tmp_path / 'b'} at 0.1 s\n")
+    code, out, err = told("--time", "0.5")
+    assert (code, out) == (2, "")
+    assert err == f"--time = 0.5 s: is beyond what {tmp_path / 'a'} has (allowed: 0 to 0.1 s)\n"
+
+
+def test_a_comparison_has_few_numbers_along_its_axes_and_a_unit_at_its_colours(tmp_path, monkeypatch):
+    kept, saved = [], pictures._saved
+    monkeypatch.setattr(pictures, "_saved", lambda figure, path: kept.append(figure) or saved(figure, path))
+    x, y = (np.arange(160) + 0.5) * 2.5e-4, (np.arange(96)[::-1] + 0.5) * 2.5e-4
+    flow, solid = np.sin(200 * x)[None, :] * np.ones((96, 1)), np.zeros((96, 160), bool)
+    field = Field(x, y, flow, flow, ~solid, solid, solid, flow, 1e-3 + 0 * flow, upwards=True)
+    pictures.comparison(field, field, compare(field, field), tmp_path / "c.png", ("one", "other"))
+    assert {it.get_ylabel() for it in kept[0].axes} >= {"vorticity, 1/s"}
+    axes = Figure(
+        figsize=(16, 9)
+    ).add_subplot()  # how many do not depend on the room that a panel has before it shrinks
+    pictures._dressed(axes, field)
+    low, high = axes.get_xlim()
+    assert 2 < sum(low <= it <= high for it in axes.get_xticks()) < 6  # nine ran into each other

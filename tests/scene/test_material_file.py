@@ -236,10 +236,13 @@ def test_the_card_keeps_where_numbers_come_from(tmp_path):
         ({"strength": {"critical": {"friction_angle": 0.3, "dilatancy_angle": 0.0}}}, "strength.peak"),
         ({"pores": {"permeability": 0.0}}, "pores.permeability"),
         ({"sole": {"density": 1.0}}, "sole"),
+        ({"soil": {"density": 2e12, "porosity": 0.2}}, "soil.density"),  # beyond what the scene takes
+        ({"strength": {name: {"friction_angle": 14.3, "dilatancy_angle": 0.0} for name in ("critical", "peak")}},
+         'degrees are written as "14.3 deg"'),
         ({"rate": {**RATE, "friction_angle": 1.6}}, "rate.friction_angle"),
         ({"rate": {"grain_diameter": 1e-3, "friction_angle": 0.6}}, "rate.inertial_number"),
     ],
-)
+)  # fmt: skip
 def test_a_wrong_file_is_refused_by_name(tmp_path, spoil, said):
     material(tmp_path, **spoil)
     with pytest.raises(InputError) as caught:

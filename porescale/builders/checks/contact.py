@@ -1,5 +1,7 @@
 """Contact laws: every number belongs to its law, nothing is missing, and what has no effect is said."""
 
+import math
+
 from porescale.builders.initial.contact_laws import law_class, merged
 from porescale.common.core.errors import Fault
 from porescale.dem.contact.choose import LAWS
@@ -8,6 +10,8 @@ from porescale.dem.contact.materials import MOST
 from porescale.scene.contact import DAMPED, Contact, Pair, Touch
 from porescale.scene.scene import Scene
 
+STEEP, RIGHT = 5.0, 90.0
+"""Coefficients of friction between these are taken for angles in degrees: 5 is that of a slope of 79 degrees."""
 SLIDING = "friction", "tangential_stiffness", "tangential_damping"
 ROLLING = "rolling_friction", "rolling_stiffness", "rolling_damping"
 
@@ -77,6 +81,20 @@ def material_doubts(scene: Scene) -> list[str]:
             " density of its own; make it one of these"
         ]
     return []
+
+
+def angles_for_friction(scene: Scene) -> list[str]:
+    """Warnings of coefficients of friction that look like angles in degrees: beyond that of any surface, and not as
+    large as one that must never slide."""
+    contact, gate = scene.contact, scene.gate
+    given = {"contact.friction": contact.friction, "contact.wall_friction": contact.wall_friction} if contact else {}
+    given |= {f"material[{k}].friction": it.friction for k, it in enumerate(scene.material)}
+    given |= {"gate.friction": gate.friction} if gate else {}
+    return [
+        f"{key} = {value:g} is a coefficient; if an angle of {value:g} degrees is meant, its tangent is"
+        f" {math.tan(math.radians(value)):.3g}"
+        for key, value in given.items() if value is not None and STEEP < value < RIGHT
+    ]  # fmt: skip
 
 
 def wall_friction_doubts(scene: Scene) -> list[str]:

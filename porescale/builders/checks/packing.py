@@ -1,17 +1,25 @@
 """The grains of a packing fit its rectangle; one that is pressed together fills the box, and its friction has springs
 to act on."""
 
+import math
+
 import numpy as np
 
 from porescale.analysis.permeability import SHORTEST, standing, with_images
-from porescale.builders.initial.contact_laws import law_class, merged
+from porescale.builders.initial.contact_laws import density_of_packing, law_class, merged
 from porescale.builders.initial.packing import drawn_radii, radii_of
 from porescale.builders.initial.placed import placed
 from porescale.common.core.errors import Fault
 from porescale.common.neighbors.placement import DENSEST
-from porescale.dem.prepare.settle import Pile
+from porescale.dem.contact.law import ContactLaw
+from porescale.dem.contact.own import OwnContact
+from porescale.dem.prepare.settle import CHAIN, Pile
 from porescale.scene.packing import SAME, Packing
 from porescale.scene.scene import Scene
+
+SUNK = 0.05
+"""Overlap over diameter at the foot of a packing beyond which it is warned of: a tenth less pores between the grains
+than of hard ones, and at three times of it a run stops."""
 
 
 def check_compressed(scene: Scene, faults: list[Fault]) -> None:
@@ -122,4 +130,28 @@ def beside_the_bed(scene: Scene) -> list[str]:
     return [
         f"permeability.window: it is {across:.2g} hydraulic diameters long along the flow, and nothing is measured in "
         f"less than {SHORTEST:g}: make it longer"
+    ]
+
+
+def too_soft_for_weight(scene: Scene, law: ContactLaw) -> list[str]:
+    """A warning where grains at the foot of a packing are pressed deep into each other by what lies on them.
+
+    law : of two grains.  The strongest force there is CHAIN times the weight above a diameter of width, in fluid less
+    buoyancy.  Of a law whose force goes as the power p - 1 of the overlap d the energy is F d/p: so the overlap follows
+    from that of an impact at 1 m/s, whose power is p.  A user's law has none."""
+    packing = scene.grains.packing if scene.grains else None
+    if packing is None or packing.compress or scene.rock or isinstance(law, OwnContact):
+        return []
+    diameter, density = packing.diameter, density_of_packing(scene)
+    heavier = abs(density - (scene.fluid.density if scene.fluid else 0.0))
+    height = max(packing.height - diameter, 0.0)
+    force = CHAIN * packing.packing_fraction * heavier * abs(scene.gravity[1]) * height * diameter
+    mass = 0.5 * math.pi / 4 * density * diameter**2
+    depth, power = law.impact(mass, 0.25 * diameter, 1.0)
+    sunk = depth * (2.0 * force * depth / (power * mass)) ** (1.0 / (power - 1.0)) / diameter
+    if sunk <= SUNK:
+        return []
+    return [
+        f"contacts are too soft for the packing: at its foot grains are pressed into each other by up to {sunk:.2g} of"
+        f" a diameter; {(sunk / SUNK) ** (power - 1.0):.2g} times as stiff ones keep it below {SUNK:g}"
     ]

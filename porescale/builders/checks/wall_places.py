@@ -1,4 +1,5 @@
-"""What stands across free walls, and walls that may hammer on their grains rather than hold a load."""
+"""What stands across free walls, walls that may hammer on their grains rather than hold a load, and a gate that stays
+shut."""
 
 import math
 from collections.abc import Iterator
@@ -89,3 +90,19 @@ def _loads(scene: Scene, diameter: float) -> Iterator[tuple[str, Pressed, float]
             yield f"wall[{k}]", wall, wall.stress.largest * wall.length / max(1, int(wall.length / diameter))
         elif wall.force is not None:
             yield f"wall[{k}]", wall, wall.force.largest
+
+
+def stays_shut(scene: Scene, diameter: float) -> list[str]:
+    """A warning of a gate that has not risen by a mean grain's ``diameter`` (m) when the run ends."""
+    gate, end = scene.gate, scene.time.end
+    if gate is None:
+        return []
+    if gate.opens_at >= end:
+        return [f"gate.opens_at = {gate.opens_at:g} s: the run ends before, at {end:g} s, and the gate stays shut"]
+    rise = math.inf if gate.lift_speed is None else gate.lift_speed * (end - gate.opens_at)
+    if rise >= diameter:
+        return []
+    return [
+        f"gate.lift_speed = {gate.lift_speed:g} m/s: at the end of the run, at {end:g} s, it has risen by {rise:.2g} m,"
+        f" less than a grain of {diameter:.2g} m, and lets none pass"
+    ]

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.quantity import Quantity
+from porescale.common.schema.quantity import Quantity, in_this_range
 
 Key = tuple[str | int, ...]
 
@@ -122,6 +122,8 @@ def _fault(
         tags = sorted({tag for inner in sections_in(field.annotation) for tag in _tags(inner)}) if field else []
         repair = f"add {discriminator} = …"
         return Fault(f"{name}.{discriminator}", None, "is missing", "", ", ".join(tags), repair)
+    if kind in ("model_type", "model_attributes_type", "dict_type") and isinstance(value, list):
+        return Fault(name, None, "is a list, where there is one only", repair=f"write [{name}] once, its keys below")
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return Fault(name, shown, "is not a section", repair=f"write [{name}] and its keys below")
     if kind in ("bool_type", "bool_parsing"):
@@ -138,7 +140,7 @@ def _fault(
         return Fault(name, value if isinstance(value, list) else shown, problem, unit, allowed, _give(help))
     for sign, bound in ((">", "gt"), (">=", "ge"), ("<", "lt"), ("<=", "le")):
         if bound in context:
-            repair = f"{_give(help)} in this range" if help else ""
+            repair = in_this_range(_give(help)) if help else ""
             return Fault(name, shown, "is out of range", unit, f"{sign} {context[bound]}", repair)
     problem = str(item["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
     problem = problem[:1].lower() + problem[1:]

@@ -1,5 +1,7 @@
 """A field of a section that measures something: its unit, its range, and the error message when it is wrong."""
 
+import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from types import UnionType
@@ -17,6 +19,12 @@ NUMBER = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?.*$"
 """Texts that may stand for a number without unit: also 5 %."""
 WITH_UNIT = NUMBER.replace(".*$", r"(\s*[^\s\d.+-]|\s+\S).*$")
 """Texts that may stand for a number with a unit; which units measure the same thing, a pattern cannot say."""
+
+
+def in_this_range(repair: str) -> str:
+    """``repair`` with these words after what is asked for, before what else is said of it (not within brackets)."""
+    first, *rest = re.split(r"(?=[,;:] )(?![^(]*\))", repair, maxsplit=1)
+    return f"{first} in this range{''.join(rest)}"
 
 
 class Refused(ValueError):
@@ -73,7 +81,9 @@ class Quantity(Range):
             choices = [*(f'"{word}"' for word in sorted(words)), *filter(None, [fault.allowed])]
             raise Refused(replace(fault, allowed=", ".join(choices)) if words else fault) from None
         if not self.contains(number):
-            repair = f"give {'the ' + self.help if self.help else 'a value'} in this range"
+            repair = in_this_range(f"give {'the ' + self.help if self.help else 'a value'}")
+            if self.unit == "rad" and isinstance(value, int | float) and self.contains(math.radians(value)):
+                repair += f'; degrees are written as "{value:g} deg"'
             raise Refused(self.fault(key, value, "is out of range", repair))
         return number
 

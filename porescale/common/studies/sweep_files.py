@@ -19,6 +19,8 @@ from porescale.common.studies.runner import FINISHED, Ended
 NAME = "sweep"
 PANELS = 12
 """Columns that a picture shows."""
+ROUND_OFF = 1e-12
+"""Share (of a mass, of a diameter) below which there is nothing but round-off, collected over millions of steps."""
 COSTS = {"steps": "step", "seconds (s)": "seconds", "core-seconds (s)": "core_seconds", "memory (B)": "peak_bytes"}
 """Columns of what a point cost, and the keys of a run card they come from."""
 Rows = Sequence[Mapping[str, Any]]
@@ -136,7 +138,7 @@ def differing(columns: Sequence[tuple[str, str]], ends: Sequence[Ended], tables:
 
 def difference(file: str, column: str, ends: Sequence[Ended], tables: Tables) -> float:
     """By how much a column's end, least or largest value differs between finished points, over its largest size; 0
-    where fewer than two have it."""
+    where fewer than two have it, and where a share is nothing but round-off, as that of the fluid's mass."""
     found = []
     for ended in ends:
         with contextlib.suppress(KeyError, ValueError, IndexError, OSError):
@@ -147,6 +149,8 @@ def difference(file: str, column: str, ends: Sequence[Ended], tables: Tables) ->
     if len(found) < 2:
         return 0.0
     size = float(np.abs(found).max())
+    if column.endswith("()") and size < ROUND_OFF:
+        return 0.0
     return float(np.ptp(found, axis=0).max()) / size if size > 0.0 else 0.0
 
 

@@ -81,15 +81,18 @@ def centre_of_mass(discs: Discs) -> Floats:
     return centre
 
 
-def max_overlap(grains: State) -> Overlap:
+def max_overlap(grains: State, free: int | None = None) -> Overlap:
     """The deepest overlap of all pairs, walls, plates, rectangles and segments, as a share of the (smaller) radius; at
     segments and corners of the sum of radius and thickness, where a disc would go through.
+
+    free : how many discs are grains, the first ones; what the others have with walls, plates and rectangles is left out
+    then (None: all are).
     """
     share, i, j = _survey(grains)
     found = [(share, i, name_of(grains, j), j)]
     walls, plates = [f"the {name} wall" for name in grains.wall_names], [f"the {name}" for name in grains.plate_names]
     names = walls, plates, [f"rectangle {k}" for k in range(len(grains.rectangles))]
-    for (share, i, w), own in zip(_survey_surfaces(grains), names, strict=True):
+    for (share, i, w), own in zip(_survey_surfaces(grains, free), names, strict=True):
         found.append((share, i, own[w] if own else "", -1))
     share, i, e = _survey_segments(grains)
     found.append((share, i, f"segment {e}" if e >= 0 else f"corner {e + grains.discs.count}", -1))
@@ -130,14 +133,15 @@ def _survey(grains: State) -> Found:
     return result
 
 
-def _survey_surfaces(grains: State) -> list[Found]:
+def _survey_surfaces(grains: State, free: int | None = None) -> list[Found]:
     """What is found at walls, plates and rectangles; corners of segments at walls by their own measure."""
     d, walls = grains.discs, grains.walls
-    found = [_deepest(d.radius - away, d.radius) for away in distances(grains)]
+    found = [_deepest((d.radius - away)[:, :free], d.radius[:free]) for away in distances(grains)]
     if grains.segments is not None and len(walls):
         # Corners may be points: what they go into a wall is held against their segments.
         away = np.einsum("nwk,wk->wn", d.position[:, None] - walls[:, PX : PY + 1], walls[:, NX : NY + 1])
-        found[0] = _deepest(d.radius - away, np.maximum(d.radius, grains.segments.beside_corner))
+        reach = np.maximum(d.radius, grains.segments.beside_corner)
+        found[0] = _deepest((d.radius - away)[:, :free], reach[:free])
     return found
 
 

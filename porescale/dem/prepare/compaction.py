@@ -117,7 +117,7 @@ class Compactor:
             factor = min(1.0 + GROWTH, 1.0 / scale)
             self._grow(grains, factor, PAUSE)
             scale *= factor
-            deepest = 0.5 * max_overlap(grains).share
+            deepest = 0.5 * max_overlap(grains, self._free(grains)).share
             if deepest <= DEEPEST:
                 fits = scale
         if deepest > DEEPEST:

@@ -196,7 +196,8 @@ def settle(grains: Grains, pile: Pile) -> None:
         law = stiffened(law, stiffer)
         grains.set_law(law)
         come_to_rest(grains, weights, pile.gravity, free=free)
-        deepest = 0.5 * max_overlap(grains).share  # of a diameter
+        # Of a diameter.  What stands may lie in a wall, out of which no stiffness takes it: that does not count.
+        deepest = 0.5 * max_overlap(grains, free).share
         stiffer = 1.2 * deepest / OVERLAP if deepest >= OVERLAP else 1.0
     grains.plates[:] = plates
     grains.plate_frictions, grains.rectangle_frictions = frictions, of_rectangles

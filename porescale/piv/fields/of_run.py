@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.record import snapshots
-from porescale.common.record.model import Grid
+from porescale.common.record.model import Grid, Snapshot
 from porescale.common.record.open_run import open_run
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.surface import Surface, of_grains
@@ -23,17 +24,37 @@ def field_of_run(folder: Path, time: float | None = None) -> Field:
 
     InputError where the folder holds neither.
     """
+    return _field(velocity_grid(_snapshot(folder, time), str(folder)))
+
+
+def moment_of_run(folder: Path, time: float | None = None) -> float:
+    """The time (s) of the field that `field_of_run` gives."""
+    return _snapshot(folder, time).time
+
+
+def _snapshot(folder: Path, time: float | None) -> Snapshot:
+    """The snapshot of a run or a measured film that is nearest to ``time`` s (None: the last); InputError where none is
+    as near as they are to each other."""
     if (folder / f"{MEASURED}.vtkhdf").exists():
         found = snapshots.catalogue(folder)
         steps = list(found)
         times = np.array([next(iter(found[step].values())).time for step in steps])
-        step = steps[-1 if time is None else int(np.abs(times - time).argmin())]
-        snapshot = snapshots.load(found[step], step)
-    else:
-        run = open_run(folder)
-        run.require_snapshots()
-        snapshot = run.snapshot(-1) if time is None else run.nearest(time)
-    return _field(velocity_grid(snapshot, str(folder)))
+        step = steps[_number(times, time, folder)]
+        return snapshots.load(found[step], step)
+    run = open_run(folder)
+    run.require_snapshots()
+    return run.snapshot(_number(run.times, time, folder))
+
+
+def _number(times: Floats, time: float | None, folder: Path) -> int:
+    """Which of ``times`` (n,) s is nearest to one, see _snapshot."""
+    if time is None:
+        return -1
+    nearest = int(np.abs(times - time).argmin())
+    if len(times) > 1 and abs(times[nearest] - time) > float(np.diff(times).max()):
+        where = f"{times[0]:g} to {times[-1]:g}"
+        raise InputError(Fault("--time", time, f"is beyond what {folder} has", "s", where))
+    return nearest
 
 
 def surface_of_run(folder: Path, x: Floats, time: float | None = None) -> Surface | None:

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_bytes
@@ -29,18 +30,14 @@ def quiver(
         axes.imshow(image, cmap="gray", vmin=0, vmax=1.3 * high, extent=whole, aspect="equal", interpolation="nearest")
     fast = draw_arrows(axes, field, over_image=image is not None)
     unit = "m/s" if field.upwards else "px a frame"
-    axes.set_title(
-        f"displacement; longest arrows {fast:.3g} {unit}" if not field.upwards else f"velocity; {fast:.3g} {unit}"
-    )
+    axes.set_title(f"{'velocity' if field.upwards else 'displacement'}; longest arrows {fast:.3g} {unit}")
     return _saved(figure, path)
 
 
 def vorticity(field: Field, path: Path) -> Path:
     """Vorticity in colour, with the vortices found."""
     figure, axes = _axes(field)
-    _painted(
-        figure, axes, field, field.vorticity(), "vorticity, " + ("1/s" if field.upwards else "a frame"), centred=True
-    )
+    _painted(figure, axes, field, field.vorticity(), _of_vorticity(field), centred=True)
     _marked(axes, vortices(field))
     return _saved(figure, path)
 
@@ -56,7 +53,7 @@ def comparison(reference: Field, other: Field, found: Comparison, path: Path, ti
     both = (found.reference_vortices, found.other_vortices)
     for axes, field, cores, title in zip(panels[:2], (reference, other), both, titles, strict=True):
         _dressed(axes, field)
-        _painted(figure, axes, field, field.vorticity(), "vorticity", centred=True, top=top)
+        _painted(figure, axes, field, field.vorticity(), _of_vorticity(field), centred=True, top=top)
         _marked(axes, cores)
         axes.set_title(title)
     _dressed(panels[2], reference)
@@ -74,6 +71,11 @@ def comparison(reference: Field, other: Field, found: Comparison, path: Path, ti
     return _saved(figure, path)
 
 
+def _of_vorticity(field: Field) -> str:
+    """What the colours of a vorticity are, with its unit."""
+    return f"vorticity, {'1/s' if field.upwards else 'a frame'}"
+
+
 def _axes(field: Field) -> tuple[Figure, Axes]:
     figure = Figure(figsize=(9, 8), layout="constrained")
     axes = figure.add_subplot()
@@ -87,6 +89,7 @@ def _dressed(axes: Axes, field: Field) -> None:
     axes.set_xlabel(f"x, {unit}")
     axes.set_ylabel(f"y, {unit}")
     axes.set_aspect("equal")
+    axes.xaxis.set_major_locator(MaxNLocator(4))  # numbers of five digits fit side by side in the narrowest panel
     half = 0.5 * abs(field.x[1] - field.x[0]) if len(field.x) > 1 else 0.5
     low, high = float(field.y.min()) - half, float(field.y.max()) + half
     axes.set_xlim(float(field.x.min()) - half, float(field.x.max()) + half)

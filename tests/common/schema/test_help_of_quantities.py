@@ -1,7 +1,12 @@
 """What messages say of a number: its help completes "give the ..."."""
 
+import math
 import re
 from pathlib import Path
+
+import pytest
+
+from porescale.common.schema.quantity import Quantity, Refused
 
 ROOT = Path(__file__).resolve().parents[3]
 NO_NOUN = re.compile(r'help="(of|from|at|in|to|under|by|for|with|how|whether|if|as) ')
@@ -19,3 +24,28 @@ def test_every_help_begins_with_what_it_is():
 
 def test_a_help_that_begins_with_a_preposition_is_found():
     assert without_a_noun('density: float = quantity("kg/m^3", help="of grains per volume")') != []
+
+
+@pytest.mark.parametrize(
+    ("help", "said"),
+    [
+        ("speed at which it rises; left out, it vanishes at once",
+         "give the speed at which it rises in this range; left out, it vanishes at once"),
+        ("radius over another, 0.7 to 0.9 in beds", "give the radius over another in this range, 0.7 to 0.9 in beds"),
+        ("corners (x, y) of the outline", "give the corners (x, y) of the outline in this range"),
+        ("", "give a value in this range"),
+    ],
+)  # fmt: skip
+def test_the_range_is_that_of_what_is_asked_for_not_of_the_last_word(help, said):
+    with pytest.raises(Refused) as caught:
+        Quantity("m", gt=0, help=help).convert(-1.0)
+    assert caught.value.faults[0].repair == said
+
+
+def test_an_angle_beyond_its_range_that_would_be_in_it_as_degrees_is_told_how_to_write_them():
+    angle = Quantity("rad", ge=0, le=1.4, help="angle of friction")
+    for given, ends in ((30, '; degrees are written as "30 deg"'), (200, "in this range"), ("2 rad", "in this range")):
+        with pytest.raises(Refused) as caught:
+            angle.convert(given)
+        assert caught.value.faults[0].repair.endswith(ends)
+    assert angle.convert("30 deg") == pytest.approx(math.pi / 6, rel=1e-15)

@@ -201,6 +201,10 @@ def test_a_wrong_shape_is_named(write) -> None:
         "size = [1.0] m: should be a valid number (allowed: > 0 m)",
     ]
     assert found[2].endswith("write [[grains]] and its keys below")
+    twice = GOOD.replace("[fluid]", "[[fluid]]")
+    assert lines(write(twice))[0].endswith(
+        "fluid: is a list, where there is one only; write [fluid] once, its keys below"
+    )
     assert lines(write(GOOD + "[[grains]]\nkind = 'clump'\nmembers = 3\n"))[0].endswith("write it as [ … ]")
     short = lines(write(GOOD.replace("spacing", "gravity = [1]\nspacing"))).pop()
     assert "fluid.gravity: entry [1] is missing" in short

@@ -274,6 +274,19 @@ def test_a_picture_shows_the_columns_that_differ_and_says_how_many_it_leaves_out
     assert len(titles) == 1
 
 
+@pytest.mark.parametrize(("size", "unit", "chosen"), [(1e-19, "()", False), (1e-3, "()", True), (1e-19, "(J/m)", True)])
+def test_a_share_that_is_only_round_off_is_no_column_that_differs(tmp_path, size, unit, chosen):
+    ends = [Ended(Point(name, ()), tmp_path / name, "finished", {}) for name in "ab"]
+    last = f"change {unit}"
+
+    def tables(folder, file):
+        far = 1.0 if folder.name == "b" else 0.5
+        return {f"c{k} (m)": np.array([1.0, 1.0 + 0.1 * far]) for k in range(12)} | {last: np.array([0.0, size * far])}
+
+    columns = [("series", name) for name in (*(f"c{k} (m)" for k in range(12)), last)]
+    assert (("series", last) in sweep_files.differing(columns, ends, tables)) == chosen
+
+
 def test_titles_of_a_picture_lie_clear_of_what_its_numbers_have_in_common(tmp_path, monkeypatch):
     """A column that differs in its ninth digit has a number of 17 characters over its axis, beside its title."""
     ends = [Ended(Point(name, ()), tmp_path / name, "finished", {}) for name in "ab"]
