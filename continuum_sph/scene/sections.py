@@ -40,7 +40,7 @@ class Scene(SceneBase):
     elsewhere: ClassVar[Mapping[str, str]] = {"domain": "porescale"}
 
     title: str = pydantic.Field("", description="title, of pictures and reports")
-    gravity: float = quantity("m/s^2", GRAVITY, ge=0, le=1e6, help="acceleration of free fall, downwards")
+    gravity: float = quantity("m/s^2", GRAVITY, ge=0, le=1e6, help="acceleration of free fall (downwards)")
     tank: TankSection
     water: WaterSection = WaterSection()
     soil: SoilSection | None = None

@@ -188,7 +188,7 @@ def read(path: Path) -> Field:
     lines = text.splitlines()
     first = lines[0].strip() if lines else ""
     try:
-        if all(line.startswith("#") or not line.strip() for line in lines):
+        if not any(line.split("#")[0].strip() for line in lines):
             raise ValueError("empty")
         if first.startswith("x,"):
             names = first.split(",")
