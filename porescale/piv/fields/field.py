@@ -188,13 +188,13 @@ def read(path: Path) -> Field:
     lines = text.splitlines()
     first = lines[0].strip() if lines else ""
     try:
-        if not any(line.split("#")[0].strip() for line in lines):
+        if not any(line.split("#")[0].split() for line in lines):  # which numpy warns of
             raise ValueError("empty")
         if first.startswith("x,"):
             names = first.split(",")
             table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:] if line.strip()])
         else:
-            table = np.loadtxt(io.StringIO(text), comments="#", ndmin=2)
+            table = np.loadtxt(lines, comments="#", ndmin=2)
             names = list(OPENPIV[: table.shape[1]])
         if table.ndim != 2 or table.shape[1] != len(names) or table.shape[1] < 4 or len(table) < 2:
             raise ValueError("not a table of x, y, u, v and more")

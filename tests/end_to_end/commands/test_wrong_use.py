@@ -46,7 +46,7 @@ WRONG: dict[tuple[str, ...], str] = {
     ("porescale", "run", "good.toml", "--set", "fluid.viscosity=-1"): "--set",
     ("porescale", "run", "good.toml", "--set", "fluid.hue=1"): "fluid.hue",
     ("porescale", "check", "good.toml", "--set", "gravity=-9.81"): "is not a list",
-    ("continuum", "check", "soil.toml", "--set", "gravity=-9.81"): "acceleration of free fall (downwards) in this range",
+    ("continuum", "check", "soil.toml", "--set", "gravity=-9.81"): "free fall (downwards) in this range",
     ("porescale", "check", "good.toml", "--set", "domain.left=Wall"): "did you mean 'wall'?",
     ("porescale", "run", "good.toml", "--quality", "fine"): "no such level",
     ("porescale", "check", "good.toml", "--set", "quality_default=[1,2,3]"): "--quality chooses one of its levels",
