@@ -58,6 +58,12 @@ def enclosing(
     return walls[rows & ~faces]
 
 
+def beyond(along: Floats, columns: Floats) -> Floats:
+    """How far (m) places ``along`` (n,) m a side lie beyond the ends of a face with wall particles at ``columns`` m."""
+    found: Floats = np.maximum(columns.min() - along, along - columns.max())
+    return found
+
+
 class FacePart(Part):
     """What flows through the faces of a scene, and their heads, which may change.
 
@@ -79,13 +85,18 @@ class FacePart(Part):
 
     def _past(self, axis: int, face: PressureFace, walls: NDArray[np.int64]) -> NDArray[np.int64]:
         """Those of ``walls`` (k,) that go on in the row of a ``face`` along its ``axis`` where it ends amid a side, as
-        far as a kernel reaches: what passes an end spreads along the side, beside walls that know of no flow."""
+        far as a kernel reaches, and are nearer to it than to others: what passes an end spreads along the side, beside
+        walls that know of no flow."""
         home, reach = self.flow.home, self.flow.law.smoothing.support
         depth = (np.array(face.point) - home[walls]) @ np.array(face.normal)
-        along, own = home[walls, axis], home[face.columns[:, 0], axis]
+        along = home[walls, axis]
         inside = (along > self.flow.lower[axis]) & (along < self.flow.upper[axis])
-        off = np.maximum(own.min() - along, along - own.max())
-        found: NDArray[np.int64] = walls[inside & (depth > 0.0) & (depth < self.spacing) & (off < reach)]
+        beside = [its for its in self.faces if (its.point, its.normal) == (face.point, face.normal)]
+        off = {id(its): beyond(along, home[its.columns[:, 0], axis]) for its in beside}
+        nearest = off[id(face)] == np.min(list(off.values()), axis=0)
+        found: NDArray[np.int64] = walls[
+            inside & nearest & (depth > 0.0) & (depth < self.spacing) & (off[id(face)] < reach)
+        ]
         return found
 
     @staticmethod

@@ -233,6 +233,15 @@ def test_flow_through_a_face_that_ends_amid_a_side_is_what_comes_out_of_the_othe
     assert model.series()["high flow in (m2/s)"] < exact - 2.0 * within
 
 
+def test_walls_between_two_faces_of_a_side_belong_to_the_nearer():
+    faces = [{"name": "high", "side": "left", "head": 1.5, "end": 0.4},
+             {"name": "low", "side": "left", "head": 1.2, "start": 0.6}]  # fmt: skip
+    given = scene(faces, soil=ground(1.0, 1.0), tank={"width": 1.0, "height": 1.0}, numerics={"spacing": 0.1},
+                  water={"sound_speed": 250.0})  # fmt: skip
+    part = Simulation(given).part(FacePart)
+    assert [part.flow.home[its, 1].round(3).tolist() for its in part.past] == [[0.45], [0.55]]
+
+
 def test_flow_follows_a_head_that_rises():
     """The same as at a constant head once it has risen: what is left of the rise falls as exp(-π² D t/L²), of which
     there are 7 in 0.3 s."""
