@@ -91,12 +91,12 @@ class FacePart(Part):
         depth = (np.array(face.point) - home[walls]) @ np.array(face.normal)
         along = home[walls, axis]
         inside = (along > self.flow.lower[axis]) & (along < self.flow.upper[axis])
-        beside = [its for its in self.faces if (its.point, its.normal) == (face.point, face.normal)]
-        off = {id(its): beyond(along, home[its.columns[:, 0], axis]) for its in beside}
-        nearest = off[id(face)] == np.min(list(off.values()), axis=0)
-        found: NDArray[np.int64] = walls[
-            inside & nearest & (depth > 0.0) & (depth < self.spacing) & (off[id(face)] < reach)
-        ]
+        off = beyond(along, home[face.columns[:, 0], axis])
+        own = inside & (depth > 0.0) & (depth < self.spacing) & (off < reach)
+        for its in self.faces:
+            if (its.point, its.normal) == (face.point, face.normal):
+                own &= off <= beyond(along, home[its.columns[:, 0], axis])
+        found: NDArray[np.int64] = walls[own]
         return found
 
     @staticmethod

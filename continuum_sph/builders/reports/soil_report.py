@@ -25,7 +25,7 @@ STEEPEST, FEWEST = math.radians(75.0), 4
 """Steepest face on which cohesive ground without tension stood (10 and 20 rows, c = γH): of 80 degrees and more it fell
 within 4 s.  And rows of a face that is more than a step of particles."""
 HEAVIEST = 4000.0  # kg/m³, of grains: quartz has 2650, basalt 3000, garnet up to 4300
-TENTH = 0.1
+TENTH = 0.1  # of the strength, by which damping holds a slip back that `check` names
 SOFTEST = 0.02
 """Strain at the floor under its own weight above which soil is so soft that its shape is not the scene's.  It falls to
 nothing at the surface, so the mean is half of it: heights and densities change by 1 % as the weight comes on or is
@@ -239,8 +239,9 @@ def report_side_walls(out: Report, section: SoilSection, *, wet: bool) -> None:
         return
     out.heading("side walls")
     rub = math.tan(walls.friction_angle)
-    alike = 0.5 * walls.distance * math.sin(section.friction_angle) / rub if rub > 0.0 else math.inf
-    out.row("depth at which they brake as its own friction does", alike, "m", "W sin φ/(2 tan δ)")
+    if rub > 0.0:
+        alike = 0.5 * walls.distance * math.sin(section.friction_angle) / rub
+        out.row("depth at which they brake as its own friction does", alike, "m", "W sin φ/(2 tan δ)")
     if wet:
         out.warn("[soil.side_walls] brake the soil alone: water slides along them without friction")
 

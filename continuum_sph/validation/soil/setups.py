@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from continuum_sph.builders.parts.soil import placed
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
@@ -51,6 +52,19 @@ def run_until(flow: SoilFlow, time: float) -> SoilFlow:
     while flow.time < time:
         flow.advance()
     return flow
+
+
+def mean_acceleration(
+    flow: SoilFlow, between: tuple[float, float], which: NDArray[np.bool_] | slice = slice(None)
+) -> float:
+    """Mean acceleration (m/s²) along x of the soil of a ``flow``, which goes on, ``between`` two times, s;  which : of
+    its particles, all unless given."""
+    n, marks = flow.soil.soil, []
+    for time in between:
+        run_until(flow, time)
+        marks.append((flow.time, float(flow.soil.v[:n, 0][which].mean())))
+    (t0, v0), (t1, v1) = marks
+    return (v1 - v0) / (t1 - t0)
 
 
 def body(

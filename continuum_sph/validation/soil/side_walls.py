@@ -3,9 +3,8 @@
 import functools
 import math
 
-from continuum_sph.validation.soil.setups import TAN_PHI
-from continuum_sph.validation.soil.slopes import HALF_DEGREE, layer
-from porescale.common.core.constants import GRAVITY
+from continuum_sph.validation.soil.setups import TAN_PHI, mean_acceleration
+from continuum_sph.validation.soil.slopes import GRAVITY, HALF_DEGREE, layer
 from porescale.common.evidence.validations import Measured, Validations
 
 VALIDATIONS = Validations()
@@ -23,14 +22,8 @@ EXACT = GRAVITY * math.cos(math.radians(SLOPE)) * BRAKE * DEEP**2 / 2.0
 def acceleration(rows: int, brake: float = BRAKE, *, bounded: bool = False) -> float:
     """Mean acceleration (m/s²) of a strewn layer on its slope, `BETWEEN` two times;  brake : 2 tan δ/W, 1/m;
     bounded : its damping."""
-    flow, marks = layer(SLOPE, rows, columns=16, strewn=0.2, side_friction=brake, bounded=bounded), []
-    n = flow.soil.soil
-    for time in BETWEEN:
-        while flow.time < time:
-            flow.advance()
-        marks.append((flow.time, float(flow.soil.v[:n, 0].mean())))
-    (t0, v0), (t1, v1) = marks
-    return (v1 - v0) / (t1 - t0)
+    flow = layer(SLOPE, rows, columns=16, strewn=0.2, side_friction=brake, bounded=bounded)
+    return mean_acceleration(flow, BETWEEN)
 
 
 @VALIDATIONS.row(

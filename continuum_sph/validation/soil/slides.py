@@ -16,7 +16,7 @@ from continuum_sph.builders.parts.soil import geostatic, placed
 from continuum_sph.soil import Material, SoilLaw
 from continuum_sph.soil.momentum import HELD_BACK
 from continuum_sph.soil.steadying import WEIGHTLESS, steadied
-from continuum_sph.validation.soil.setups import DENSITY, POISSON, SKIN, STIFFNESS
+from continuum_sph.validation.soil.setups import DENSITY, POISSON, SKIN, STIFFNESS, mean_acceleration
 from continuum_sph.water.smoothing import RATIO, Smoothing
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
@@ -50,13 +50,7 @@ def acceleration(rows: int, *, bounded: bool = True, **law: Any) -> float:
     depth = x[:, 1] - 0.5
     flow.soil.material[: len(x)] = np.abs(depth) < 0.5 * THICK
     flow.start()
-    above, marks = depth > 0.5 * THICK, []
-    for time in BETWEEN:
-        while flow.time < time:
-            flow.advance()
-        marks.append((flow.time, float(flow.soil.v[: len(x), 0][above].mean())))
-    (t0, v0), (t1, v1) = marks
-    return (v1 - v0) / (t1 - t0)
+    return mean_acceleration(flow, BETWEEN, depth > 0.5 * THICK)
 
 
 BRAKED = HELD_BACK * WEAK * GRAVITY * math.cos(math.radians(DEGREES)) / EXACT

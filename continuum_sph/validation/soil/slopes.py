@@ -9,7 +9,17 @@ import numpy as np
 from continuum_sph.builders.parts.soil import geostatic
 from continuum_sph.soil import Material, Rate, SoilFlow
 from continuum_sph.soil.stress import GROWN
-from continuum_sph.validation.soil.setups import AREA, COLUMN, DENSITY, POISSON, STIFFNESS, TAN_PHI, in_tank, run_until
+from continuum_sph.validation.soil.setups import (
+    AREA,
+    COLUMN,
+    DENSITY,
+    POISSON,
+    STIFFNESS,
+    TAN_PHI,
+    in_tank,
+    mean_acceleration,
+    run_until,
+)
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import square_lattice
 
@@ -193,14 +203,9 @@ def strewn_friction(
 
     friction : sin φ of the soil.
     """
-    flow, tilt, marks = layer(degrees, rows, friction, columns=16, strewn=0.2), math.radians(degrees), []
-    n = flow.soil.soil
-    for time in between:
-        while flow.time < time:
-            flow.advance()
-        marks.append((flow.time, float(flow.soil.v[:n, 0].mean())))
-    (t0, v0), (t1, v1) = marks
-    return (GRAVITY * math.sin(tilt) - (v1 - v0) / (t1 - t0)) / (GRAVITY * math.cos(tilt))
+    found = mean_acceleration(layer(degrees, rows, friction, columns=16, strewn=0.2), between)
+    tilt = math.radians(degrees)
+    return (GRAVITY * math.sin(tilt) - found) / (GRAVITY * math.cos(tilt))
 
 
 HALF_DEGREE = math.radians(0.5) * (1.0 + TAN_PHI**2) / TAN_PHI
