@@ -19,8 +19,8 @@ class SuctionSection(Section):
     particles of soil, and open water is at rest at the levels of the reservoirs: there are no particles of water.
     """
 
-    alpha: float = quantity("1/m", ge=1e-3, le=1e3, help="van Genuchten's alpha: of the order of one over the fringe")
-    n: float = quantity("", ge=1.05, le=20, help="van Genuchten's n: how evenly pores are sized")
+    alpha: float = quantity("1/m", ge=1e-3, le=1e3, help="alpha of van Genuchten: of the order of one over the fringe")
+    n: float = quantity("", ge=1.05, le=20, help="n of van Genuchten: how evenly pores are sized")
     residual: float = quantity("", 0.0, ge=0, le=0.95, help="residual saturation S_r")
     connectivity: float = quantity("", 0.5, ge=-2, le=5, help="l of Mualem's relative permeability")
     saturation: float | None = quantity("", None, gt=0, le=1, help="saturation of all pores at the start")
@@ -40,8 +40,6 @@ class SuctionSection(Section):
                                f"<= {scene.tank.height:g}"))  # fmt: skip
         if scene.gravity == 0.0:
             found.append(Fault("gravity", 0.0, "gives suction in metres of water no pressure", "m/s^2", "> 0"))
-        elif scene.water.sound_speed is None and scene.soil.held and scene.head == 0.0:
-            found.append(Fault("water.sound_speed", None, "is needed when no reservoir has a level to take it from"))
         for name, there, instead in (
             ("water.column", scene.water.column, "use [[reservoir]] for open water"),
             ("probe", scene.probe, "leave it out: snapshots have pore_pressure and saturation of every particle"),

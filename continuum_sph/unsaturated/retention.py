@@ -117,10 +117,10 @@ class VanGenuchten:
         slopes = np.array([self.slope(at) for at in trial])
         middle = float(trial[slopes.argmin()])
         if slopes.min() >= self.stiffness:
-            raise InputError(
-                Fault("water.sound_speed", self.stiffness, "makes water softer than its suction in pores", "Pa",
-                      f"K_w > {slopes.min():.3g}", "raise it, or soil.suction.alpha")
-            )  # fmt: skip
+            problem = f"makes water softer, {self.stiffness:.3g} Pa, than suction in its pores, {slopes.min():.3g} Pa"
+            times = 1.005 * math.sqrt(slopes.min() / self.stiffness)  # more than what three digits round off
+            repair = f"raise it more than {times:.3g} times, or soil.suction.alpha"
+            raise InputError(Fault("water.sound_speed", None, problem, repair=repair))
         wet, dry = self._end(1.0 - middle, wet=True), self._end(middle, wet=False)
         filled, left = (self.residual + (1.0 - self.residual) * at for at in (wet, dry))
         return RetentionNumbers(

@@ -57,10 +57,6 @@ def run(
     from porescale.demseg.deck import read_deck
     from porescale.demseg.run import DeckRun, card_of
 
-    if rod is not None and not rod > 0.0:
-        raise InputError(Fault("--rod", rod, "is out of range", allowed="> 0"))
-    if seed < 0:
-        raise InputError(Fault("--seed", seed, "is out of range", allowed=">= 0"))
     options = Options(seed, release, rule, rod)
     folder = _deck_folder(folder)
     deck = read_deck(folder)
@@ -161,6 +157,7 @@ def convert(
     from porescale.demseg.run import DeckRun
     from porescale.demseg.tension import tensions
 
+    options = Options(seed, release, rod=rod)
     folder = _deck_folder(folder)
     deck = read_deck(folder)
     name = folder.resolve().name
@@ -171,7 +168,7 @@ def convert(
     if rule != "outline" and any(body.segments for body in deck.bodies):
         problem = "scenes count corners of segments once"
         raise InputError(Fault("--rule", rule, problem, allowed="outline", repair="use porescale demseg run"))
-    model = DeckRun(deck, Options(seed, release, rod=rod), folder)
+    model = DeckRun(deck, options, folder)
     bonds = tensions(model.built) if model.grains.bonds is not None else None
     text = toml(scene_of(model.deck, name, release, UNITS[units], bonds, rod))
     refused = _require_valid_scene(text)
@@ -197,11 +194,12 @@ def volonoi(
     """Make polygons of the discs of in_gm.dat, thick apart: in_gm_tri.dat (Delaunay) and in_gm_volo.dat (Voronoi)."""
     from porescale.common.api.folders import require_writable
     from porescale.common.core.atomic import write_text
-    from porescale.demseg.build import with_bodies
+    from porescale.demseg.build import Options, with_bodies
     from porescale.demseg.check import check_bodies
     from porescale.demseg.deck import grains_text, read_grains
     from porescale.demseg.divide import FILES, divided
 
+    options = Options(seed)
     place = out or Path()
     require_writable(place, "--out")
     there = [place / name for name in FILES.values() if (place / name).exists()]
@@ -209,7 +207,7 @@ def volonoi(
         raise InputError(Fault("--out", str(there[0]), "is there already", repair="name another, or --overwrite it"))
     given = read_grains(_deck_folder(folder))
     check_bodies(given)
-    deck = with_bodies(given, seed)
+    deck = with_bodies(given, options.seed)
     made = {kind: divided(deck, kind, pressed) for kind in FILES}
     place.mkdir(parents=True, exist_ok=True)
     for kind, each in made.items():

@@ -43,12 +43,22 @@ so often in all."""
 
 @dataclass(frozen=True)
 class Options:
-    """Read by the program at run time, or left open: see module.  rule : of contacts with segments, segments.py."""
+    """Read by the program at run time, or left open: see module.  rule : of contacts with segments, segments.py.
+
+    Raises InputError for a seed below 0, and a rod that is not finite or not above 0.
+    """
 
     seed: int = 0
     release: str = "overlap"
     rule: str = "outline"
     rod: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse numbers without sense, by the names that commands have for them."""
+        if self.rod is not None and not 0.0 < self.rod < math.inf:
+            raise InputError(Fault("--rod", self.rod, "is out of range", allowed="> 0"))
+        if self.seed < 0:
+            raise InputError(Fault("--seed", self.seed, "is out of range", allowed=">= 0"))
 
 
 @dataclass

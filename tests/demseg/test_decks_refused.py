@@ -132,3 +132,19 @@ def test_a_step_beyond_the_stable_one_is_doubted_before_it_is_done(tmp_path, cap
         assert main(commands(), ["demseg", "run", str(folder), "--out", str(tmp_path / "out" / dt), "--quiet"]) == 0
         said = f"warning: {folder / 'in_gm.dat'}: dt = 0.00067 is beyond 0.000409, up to which"
         assert (said in capsys.readouterr().err) == doubted
+
+
+@pytest.mark.parametrize(
+    ("job", "word", "value"),
+    [
+        *((job, "--seed", "-1") for job in ("run", "convert", "volonoi")),
+        *((job, "--rod", value) for job in ("run", "convert") for value in ("0.0", "inf", "nan")),
+    ],
+)
+def test_options_without_sense_are_refused_by_every_command_that_has_them(tmp_path, capsys, job, word, value):
+    folder = decks.write(tmp_path, "0 0 0\n5d-5 0 -980\n1\n2.5 1d8 .25d8 1d2 .5d2 27\n0 30 0 30 0.1\n1 2\n1\n0.5\n")
+    assert main(commands(), ["demseg", job, str(folder), "--out", str(tmp_path / "made"), word, value]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"{word} = {value}: is out of range")
+    assert said.count("\n") == 1
+    assert not (tmp_path / "made").exists()

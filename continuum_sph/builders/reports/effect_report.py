@@ -7,6 +7,7 @@ from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection
 from continuum_sph.scene.tank import TankSection
+from continuum_sph.scene.water import WaterSection
 from porescale.common.api.report import Report
 
 OF_WATER = (
@@ -17,7 +18,8 @@ OF_WATER = (
 IN_THE_OPEN = ("diffusion_of", "gradient")
 """Keys that water has alone, and not with soil (`parts.pore_water.pore_law`)."""
 
-
+OF_LIQUID = ("viscosity", "exponent", "pressure")
+"""Keys of water that its particles alone have: density and speed of sound are also those of pores under suction."""
 OF_TANK = ("walls", "wall_particles")
 """Keys of the tank that water has alone; those of soil are soil.floor and soil.sides."""
 OF_STATE = ("sound_speed", "pressure", "exponent")
@@ -53,6 +55,10 @@ def _warn_beside_soil(scene: Scene, soil: SoilSection, out: Report) -> None:
         if value != NumericsSection.model_fields[key].default:
             beside = ": soil.numerics.gradient is that of the soil" if key == "gradient" and not soil.held else ""
             out.warn(f"numerics.{key} = {value} has no effect: {why}; take it out{beside}")
+    for key in () if wet else OF_LIQUID:
+        value = getattr(scene.water, key)
+        if value != WaterSection.model_fields[key].default:
+            out.warn(f"water.{key} = {value} has no effect: {why}; take it out")
     for key in () if wet else OF_TANK:
         value = getattr(scene.tank, key)
         if value != TankSection.model_fields[key].default:

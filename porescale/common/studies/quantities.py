@@ -30,7 +30,8 @@ SHARES = ("fall", "peak")
 
 
 def measured(columns: Columns, row: Mapping[str, Any]) -> float:
-    """The number that ``row`` describes; nan beyond the end of the run, infinity where it never falls so low.
+    """The number that ``row`` describes; nan beyond the end of the run and where it is never above, infinity where it
+    never falls so low or rises so high.
 
     Whole steps end a little off the prescribed time: the last row stands for less than half a row more.
 
@@ -61,7 +62,7 @@ def _found(time: NDArray[Any], values: NDArray[Any], at: Mapping[str, Any]) -> f
     for name, of in LATE.items():
         if name in at:
             late = time >= at[name]
-            return of(time[late], values[late])
+            return of(time[late], values[late]) if late.any() else float("nan")
     if "quantile" in at:
         return float(np.quantile(values, at["quantile"]))
     share = at.get("share_of")
@@ -76,7 +77,7 @@ def _found(time: NDArray[Any], values: NDArray[Any], at: Mapping[str, Any]) -> f
     if "first_above" in at:
         return float(min(time[values >= at["first_above"]], default=np.inf))
     if "last_above" in at:
-        return float(time[np.flatnonzero(values > at["last_above"])[-1]])
+        return float(max(time[values > at["last_above"]], default=np.nan))
     raise ValueError(f"at = {dict(at)!r} holds no known key")
 
 

@@ -76,6 +76,25 @@ def test_dry_soil_has_neither_walls_of_water_nor_strengths_of_a_file_that_is_not
     assert all(np.array_equal(soils[0][name], soils[1][name]) for name in soils[0])
 
 
+@pytest.mark.parametrize(("key", "value"), [("viscosity", 1.0), ("exponent", 2.0), ("pressure", "none")])
+@pytest.mark.parametrize("suction", [None, {"alpha": 10.0, "n": 3.0, "water_table": 0.1}])
+def test_soil_without_particles_of_water_has_nothing_of_them(suction, key, value):
+    """Flow in pores that are partly full follows soil.permeability: a sweep over the viscosity changed nothing."""
+    made = [
+        tank_scene(1.0, 0.6, 0.05, soil={"body": [{"outline": [[0.5, 0], [1, 0], [1, 0.3]]}], "suction": suction},
+                   water={"sound_speed": 30.0} | more)
+        for more in ({}, {key: value})
+    ]  # fmt: skip
+    said = [[it.split(" = ")[0] for it in report(each).warnings if "has no effect" in it] for each in made]
+    assert said == [[], [f"water.{key}"]]
+    states = []
+    for each in made:
+        model = Simulation(each)
+        model.advance(STEPS)
+        states.append(model.snapshot().clouds["soil" if suction else "particles"])
+    assert all(np.array_equal(states[0].data[name], states[1].data[name]) for name in states[0].data)
+
+
 @pytest.mark.parametrize("law", ["liquid", "adiabatic", "printed"])
 @pytest.mark.parametrize(("key", "value"), [("sound_speed", 80.0), ("pressure", 5e4), ("exponent", 2.0)])
 def test_what_a_second_fluid_does_not_have_is_said(law, key, value):

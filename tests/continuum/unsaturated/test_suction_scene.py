@@ -55,9 +55,10 @@ def test_what_cannot_be_is_refused_by_its_key(given, changes, key):
         scene(SUCTION | given, **changes)
 
 
-def test_soil_that_is_held_is_not_sent_for_water_that_suction_refuses():
+@pytest.mark.parametrize("water", [{"sound_speed": 75.0}, {}])
+def test_soil_that_is_held_is_not_sent_for_water_that_suction_refuses(water):
     with pytest.raises(InputError) as refused:
-        scene(soil={"held": True})
+        scene(soil={"held": True}, water=water)
     assert [fault.problem for fault in refused.value.faults] == ["cannot be with soil.suction"]
 
 
@@ -157,8 +158,10 @@ def test_check_warns_of_water_that_is_soft_and_of_levels_over_the_crest():
 
 def test_check_refuses_water_softer_than_suction():
     given = SUCTION | {"alpha": 0.001, "n": 1.1, "water_table": 0.1}
-    with pytest.raises(InputError, match="sound_speed"):
+    said = r"^water\.sound_speed: makes water softer, 1e\+03 Pa, than suction in its pores, [0-9.e+]+ Pa; raise it more"
+    with pytest.raises(InputError, match=said) as refused:
         report(scene(given, water={"sound_speed": 1.0}))
+    report(scene(given, water={"sound_speed": float(str(refused.value).split("more than ")[1].split()[0])}))
 
 
 @pytest.mark.parametrize("look", [report, Simulation])

@@ -136,6 +136,9 @@ def test_numbers_are_read_from_the_series_as_stated():
     columns |= {"z (m)": np.array([-1.0, 1.0, -1.0, 1.0])}  # rises through its mean at 0.5 s and 2.5 s
     assert measured(columns, {"column": "z (m)", "at": {"period_from": 0.0}}) == 2.0
     assert np.isnan(at(3.5))
+    assert np.isnan(at({"last_above": 9.0}))
+    for late in ("mean_from", "max_from", "rms_from", "period_from", "change_from"):
+        assert np.isnan(at({late: 3.5})), late  # of a run that was made shorter
     row = {"name": "y", "column": "y (m)", "at": "end", "value": 4.1, "tolerance": 0.05, "unit": "m"}
     assert missed(columns, [row]) == ["y: 4, expected 4.1 ± 0.05 m"]
     assert missed({**columns, "y (m)": columns["y (m)"] * np.nan}, [row])  # no number is not within tolerance
