@@ -138,7 +138,7 @@ def _digest(scene: Any, point: Point) -> bytes:
 def _twice(one: Point, other: Point) -> Fault:
     """What is wrong with two points of one scene: the first value that they write in two ways."""
     pairs = zip(one.settings, other.settings, strict=True)
-    before, again = next(((a, b) for a, b in pairs if a != b), (one.settings[0], other.settings[0]))
+    before, again = next(((a, b) for a, b in pairs if a != b), (one.settings[-1], other.settings[-1]))
     key, _, value = again.partition("=")
     return Fault(key, value, f"is {before.partition('=')[2]}, which is given, too", repair="leave one out")
 

@@ -166,9 +166,9 @@ def test_what_cannot_be_repeated_is_said_in_one_line(scene, count, over, vary, s
 @pytest.mark.parametrize("values", ["5,5", "5,5.0,6"])
 def test_a_repeat_needs_a_value_of_its_own(toy, scene, values):
     # Two ways to write a value were two runs of the same bits, and the deviation that of fewer.
-    code, _, (line,) = toy("sweep", "scene.toml", "--over", f"decay.rate={values}")
+    code, _, (line,) = toy("sweep", "scene.toml", "--over", f"decay.rate={values}", "--vary", "decay.start=3")
     assert code == 2
-    assert line.startswith("--over: decay.rate = '5")
+    assert line.startswith("--over: decay.rate = '5")  # not the first thing that it sets
     assert line.endswith("is 5, which is given, too; leave one out")
     assert not (scene.parent / "runs").exists()
 
