@@ -157,7 +157,7 @@ class EveryHook(Hook):
                 raise self.fault(f"{str(name)!r} is no name of a column", 'name it as "height (m)"')
             try:
                 row[str(name)] = float(value)
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
                 raise self.fault(f"column {str(name)!r} is no number", "give one number a column") from None
         row.pop(TIME, None)
         return row

@@ -69,8 +69,8 @@ def sweep(
         combined = "vary" if isinstance(vary, Mapping) and vary else ""
         file, name = check_points(program, start, points, quality, texts, combined)
         if asked:
-            points = repeated(program, start, points, asked, quality, texts)
-            check_points(program, start, points, quality, texts)
+            single, points = len(points), repeated(program, start, points, asked, quality, texts)
+            check_points(program, start, points, quality, texts, "over", len(points) // single)
         folder = output_folder(out, f"{name}_sweep", IN_PYTHON)
         given = scene if isinstance(scene, program.scene()) else None
         if given is not None:
@@ -124,7 +124,7 @@ def points_of(vary: Vary | None, asked: Repeats | None = None) -> list[Point]:
             choices.append([setting_texts({key: value})[0] for value in values])
     if faults:
         raise InputError(faults)
-    return named(combinations(choices))
+    return named(combinations(choices, "vary"))
 
 
 @contextmanager

@@ -77,8 +77,8 @@ def command(package: Package) -> Callable[..., int]:
         combined, each = "--vary" if vary else "", len(varied(vary)) if vary and table else 0
         file, name = check_points(package, start, points, quality, settings or (), combined, each)
         if asked:
-            points = repeated(package, start, points, asked, quality, settings or ())
-            check_points(package, start, points, quality, settings or ())
+            single, points = len(points), repeated(package, start, points, asked, quality, settings or ())
+            check_points(package, start, points, quality, settings or (), "--over", len(points) // single)
         folder = output_folder(out, f"{name}_sweep")
         campaign = Campaign(package.module, file, folder, tuple(settings or ()), quality, threads or 1, again)
         enlist(campaign, jobs, scheduler)

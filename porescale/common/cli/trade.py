@@ -79,7 +79,8 @@ def command(package: Package) -> Callable[..., int]:
         truth = repeats(reference) if reference else []
         groups = [repeats(point) for _, _, point in variants]
         points = [*truth, *(point for group in groups for point in group)]
-        file, name = check_points(package, start, points, None, settings or ())
+        over_key = "--over" if asked else ""
+        file, name = check_points(package, start, points, None, settings or (), over_key, len(groups[0]))
         folder = output_folder(out, f"{name}_trade")
         campaign = Campaign(package.module, file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
         enlist(campaign, jobs, scheduler)

@@ -124,16 +124,16 @@ def parse_name(name: str) -> Key:
 def setting_text(name: str, value: Any) -> str:
     """``section.key=value``, which `parse_setting` reads back to the bit; InputError where ``name`` is no key."""
     parse_name(name)
-    return f"{name}={_value_text(plain(value))}"
+    return f"{name}={value_text(plain(value))}"
 
 
-def _value_text(value: Any) -> str:
+def value_text(value: Any) -> str:
     """A plain value as TOML in one line; "none" for None, which TOML has not."""
     if isinstance(value, Mapping):
-        entries = [f"{_value_text(name)} = {_value_text(below)}" for name, below in value.items()]
+        entries = [f"{value_text(name)} = {value_text(below)}" for name, below in value.items()]
         return f"{{ {', '.join(entries)} }}"
     if isinstance(value, list):
-        return f"[{', '.join(map(_value_text, value))}]"
+        return f"[{', '.join(map(value_text, value))}]"
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):  # TOML's texts are those of JSON but for the sign of deletion

@@ -100,8 +100,6 @@ class Repeats:
         if self.count not in (None, len(values)):
             problem = f"contradicts the {len(values)} values of {over}"
             raise InputError(Fault(self.words[0], self.count, problem, repair="leave it out"))
-        if len(set(values)) < len(values):
-            raise InputError(Fault(over, self.over, "has a value twice", repair="a repeat needs a value of its own"))
         return [(f"{key}={value}",) for value in values]
 
 

@@ -32,6 +32,8 @@ AS_IT_IS = "as-it-is"
 """Name of the point that sets nothing."""
 LONGEST = 80
 MOST = 100_000
+FILES = "sweep.csv", "sweep.md", "sweep.png", "ensemble.csv", "report.html"
+"""What lies beside the folders of points, so that none may have its name."""
 
 
 @dataclass(frozen=True)
@@ -79,12 +81,9 @@ def varied(options: Sequence[str]) -> list[Point]:
         if not equals or not key.strip() or not all(parts):
             repair = "write it as --vary contact.friction=0.2,0.5"
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
-        twice = next((part for k, part in enumerate(parts) if part in parts[:k]), None)
-        if twice is not None:
-            raise InputError(Fault(key.strip(), twice, "is given twice", repair="leave one out", file="--vary"))
         lists.append([f"{key.strip()}={part}" for part in parts])
     _once([settings[0] for settings in lists], "--vary")
-    return named(combinations(lists))
+    return named(combinations(lists, "--vary"))
 
 
 def crossed(points: Sequence[Point], others: Sequence[Point]) -> list[Point]:
@@ -117,19 +116,22 @@ def repeats(point: Point, choices: Iterable[tuple[str, ...]]) -> list[Point]:
 
 
 def named(points: Iterable[Point]) -> list[Point]:
-    """Points with a name each, made of what they set; those that share one are numbered."""
-    made, seen = [], dict[str, int]()
+    """Points with a name each, made of what they set; those that share one, or that of a file, are numbered."""
+    made, last = [], dict.fromkeys(FILES, 1)  # the number of the last one of a name
     for point in points:
-        name = _slug(point.name or _made_name(point))
-        seen[name.casefold()] = number = seen.get(name.casefold(), 0) + 1
-        made.append(replace(point, name=name if number == 1 else f"{name}-{number}"))
+        name = own = _slug(point.name or _made_name(point))
+        while name.casefold() in last:
+            last[own.casefold()] += 1
+            name = f"{own}-{last[own.casefold()]}"
+        last[name.casefold()] = 1
+        made.append(replace(point, name=name))
     return made
 
 
 def literal(value: Any, key: str) -> str:
     """A value as TOML writes it; InputError for what a setting cannot hold."""
     if isinstance(value, bool | int | float | str | list):
-        return json.dumps(value, ensure_ascii=False)
+        return scene_file.value_text(value)
     raise InputError(Fault(key, str(value), "is not a number, text, truth or list"))
 
 
@@ -213,8 +215,13 @@ def _of_toml(path: Path) -> Iterator[Point]:
         yield from combinations(choices)
 
 
-def combinations(lists: Sequence[Sequence[str]]) -> list[Point]:
-    """A point for every choice of one setting out of each list; InputError where they are too many."""
+def combinations(lists: Sequence[Sequence[str]], source: str = "") -> list[Point]:
+    """A point for every choice of one setting out of each list; InputError where one is there twice, or they are too
+    many.  source : what messages call the place of the lists."""
+    for settings in lists:
+        if len(set(settings)) < len(settings):
+            key, _, value = next(it for it in settings if settings.count(it) > 1).partition("=")
+            raise InputError(Fault(key, _unquoted(value), "is given twice", repair="leave one out", file=source))
     count = math.prod(map(len, lists))
     if count > MOST:
         raise InputError(Fault("points", count, "are too many combinations", "", f"<= {MOST}"))

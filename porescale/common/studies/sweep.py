@@ -85,7 +85,8 @@ def check_points(
     vary: str = "",
     each: int = 0,
 ) -> tuple[Path, str]:
-    """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs.
+    """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs, and
+    where one of the ``settings`` has no effect, since every point has its own.
 
     vary : what messages call the options of which the points are all combinations: none of them is another's scene;
     each : so many points follow one another for each row of a table, whose rows may say what they want (0: no table).
@@ -93,6 +94,13 @@ def check_points(
     from porescale.common.schema.scene_file import find
     from porescale.common.schema.sections import load
 
+    own = [{text.partition("=")[0] for text in (point.of or point).settings} for point in points]
+    for text in settings:
+        key, _, value = text.partition("=")
+        if all(key in keys for keys in own):
+            raise InputError(
+                Fault(key, value, "is set by every run of the sweep, too", repair="leave one out", file="--set")
+            )
     faults: dict[str, Fault] = {}  # by what they say: what is wrong with every point is said of the first
     first: dict[tuple[int, bytes], Point] = {}
     for at, point in enumerate(points):
@@ -130,7 +138,7 @@ def _digest(scene: Any, point: Point) -> bytes:
 def _twice(one: Point, other: Point) -> Fault:
     """What is wrong with two points of one scene: the first value that they write in two ways."""
     pairs = zip(one.settings, other.settings, strict=True)
-    before, again = next(((a, b) for a, b in pairs if a != b), (one.settings[0], other.settings[0]))
+    before, again = next(((a, b) for a, b in pairs if a != b), (one.settings[-1], other.settings[-1]))
     key, _, value = again.partition("=")
     return Fault(key, value, f"is {before.partition('=')[2]}, which is given, too", repair="leave one out")
 

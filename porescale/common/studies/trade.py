@@ -109,7 +109,16 @@ class Errors:
         return distance(values, truth, quantity.scale)
 
     def answers(self) -> list[dict[str, list[float]]]:
-        """Values in the references of each quantity that is a number, so that a run can be held against them later."""
+        """Values in the references of each quantity that is a number, so that a run can be held against them later.
+
+        InputError where a reference has none of any quantity: all errors would be infinite.
+        """
+        for quantity in self.plan.quantity:
+            every = [self.answer(it, quantity)[1] for it in self.references]
+            if not all(values.size and np.isfinite(values).all() for values in every):
+                at = None if quantity.feature else str(quantity.at)
+                repair, where = "name a time within its run, at which it has one", f"quantity {quantity.name!r}"
+                raise InputError(Fault("at", at, "the reference has no number there", repair=repair, file=where))
         numbers = [quantity for quantity in self.plan.quantity if not (quantity.is_curve or quantity.feature)]
         return [
             {quantity.name: self.answer(ended, quantity)[1].tolist() for quantity in numbers if quantity.exact is None}

@@ -137,8 +137,9 @@ def picture(points: Sequence[Traded], packings: Mapping[str, float], dear: float
         axes.axhline(floor, color="grey", linestyle=":", linewidth=0.9, label="another packing")
     if dear:
         axes.axvline(dear, color="grey", linestyle="--", linewidth=0.9, label="what errors are held against")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    if shown:  # without a point there is nothing to scale by
+        axes.set_xscale("log")
+        axes.set_yscale("log")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("{x:g}")

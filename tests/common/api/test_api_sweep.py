@@ -171,7 +171,8 @@ def test_a_run_that_does_not_finish_is_a_warning_and_a_row(scene, ran, tmp_path)
         ({"contact.friction": []}, "vary.contact.friction = '[]': holds no value"),
         ({"contact.friction": np.array(0.5)}, "vary.contact.friction = '0.5': is not a list of values"),
         (pandas.DataFrame({"contact.friction": [0.5]}), 'of a DataFrame, its to_dict("records")'),
-        ({"contact.friction": [-1.0, -1.0]}, "contact.friction = -1"),
+        ({"contact.friction": [-1.0, -2.0]}, "contact.friction = -1"),
+        ({"contact.friction": [0.5, 0.5]}, "vary: contact.friction = '0.5': is given twice"),
     ],
 )
 def test_what_is_wrong_is_said_before_anything_runs(scene, ran, tmp_path, vary, said):

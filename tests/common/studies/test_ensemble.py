@@ -151,7 +151,6 @@ def test_another_key_is_counted_up_or_has_its_values_given(scene, tmp_path):
         (3, "a b", [], "is not section.key"),
         (None, "noise.seed", [], "does not say how often"),
         (3, "noise.seed=1,2", [], "contradicts the 2 values of --over"),
-        (None, "noise.seed=1,1", [], "has a value twice"),
         (None, "noise.seed=1,,1", [], "is not section.key, or section.key=a,b,c"),
         (2, None, ["noise.seed=1,2"], "is varied by the sweep and by --repeat"),
         (9000, None, ["decay.rate=1,2"], "are too many runs"),
@@ -162,6 +161,16 @@ def test_what_cannot_be_repeated_is_said_in_one_line(scene, count, over, vary, s
         repeats(scene, count, over, varied(vary) if vary else None)
     (fault,) = caught.value.faults
     assert said in fault.line()
+
+
+@pytest.mark.parametrize("values", ["5,5", "5,5.0,6"])
+def test_a_repeat_needs_a_value_of_its_own(toy, scene, values):
+    # Two ways to write a value were two runs of the same bits, and the deviation that of fewer.
+    code, _, (line,) = toy("sweep", "scene.toml", "--over", f"decay.rate={values}", "--vary", "decay.start=3")
+    assert code == 2
+    assert line.startswith("--over: decay.rate = '5")  # not the first thing that it sets
+    assert line.endswith("is 5, which is given, too; leave one out")
+    assert not (scene.parent / "runs").exists()
 
 
 def test_a_scene_that_draws_nothing_is_refused_and_told_what_to_do(tmp_path):

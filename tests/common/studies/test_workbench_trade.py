@@ -149,6 +149,16 @@ def test_a_point_that_did_not_finish_is_infinitely_wrong_and_never_on_the_front(
     assert not front([point])[0].on_front
 
 
+def test_a_quantity_without_a_number_is_said_in_one_line(tmp_path):
+    # At a time beyond the end of the runs it was a traceback of JSON, after all of them; the picture was another.
+    late = plan(tmp_path, PLAN.replace('column = "y (m)"', 'column = "y (m)"\nat = 50.0'))
+    errors = Errors(late, tables, {}, [ended("4 1")])
+    with pytest.raises(InputError, match=r"^quantity 'end': at = '50\.0': the reference has no number there"):
+        errors.answers()
+    trade_files.write(tmp_path / "out", {}, [errors.trade("k", "l", Point("p", ()), [ended("5 1")])], {})
+    assert "| l | 2 | 0 | finished | – | 0 % |" in (tmp_path / "out" / "trade.md").read_text()
+
+
 def test_a_point_has_the_mean_of_its_repeats_with_what_it_is_worth(tmp_path):
     errors = Errors(plan(tmp_path), tables, {}, [ended("4 1"), ended("6 1"), ended("8 1")])
     point = errors.trade("k", "l", Point("p", ()), [ended("5 1"), ended("6 4"), ended("8 2")])
