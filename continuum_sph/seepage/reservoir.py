@@ -206,20 +206,27 @@ class Reservoir:
 class Supply:
     """The reservoirs of a layer, and those of its particles that wait.
 
-    berth : (fluid, 2) m, where each would wait.
+    berth : (fluid, 2) m, where each would wait;  spare : particles that wait for reservoirs at the start, those beyond
+    are for `halving`.
     """
 
     def __init__(
         self, layer: Layer, reservoirs: Sequence[Reservoir], berth: Floats, spacing: float, density: float,
-        stiffness: float, gravity: float,
+        stiffness: float, gravity: float, spare: int,
     ) -> None:  # fmt: skip
         """spacing m;  density : ρ0, kg/m³;  stiffness : ρ0 c0², Pa, for pressures of new particles;  gravity m/s²."""
         assert berth.shape == (layer.fluid, 2)
         self.layer, self.reservoirs, self.berth, self.spacing = layer, list(reservoirs), berth, spacing
-        self.density, self.stiffness, self.gravity = density, stiffness, gravity
+        self.density, self.stiffness, self.gravity, self.spare = density, stiffness, gravity, spare
         self.whole = density * spacing * spacing  # kg/m, of a new particle
         for it in self.reservoirs:
             it.fit(spacing, density, [other for other in self.reservoirs if other is not it])
+
+    @property
+    def reserve(self) -> int:
+        """How many particles are still to wait for reservoirs."""
+        net = sum(pool.let_in - pool.let_out for pool in self.reservoirs)
+        return max(0, self.spare - round(net / self.whole))
 
     def keep(self, time: float) -> None:
         """Bring every reservoir to its level of ``time`` (s), between drift and forces of a step.

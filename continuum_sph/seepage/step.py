@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.seepage.halving import halve
 from continuum_sph.seepage.pores import PoreFlow
 from continuum_sph.seepage.reservoir import Supply
 
@@ -96,6 +97,7 @@ class Seepage:
         ratio = water.begin(step)
         if self.supply is not None:
             self.supply.keep(water.time + step)
+            halve(water, self.supply.whole, self.supply.reserve)
         ground.strain(step)
         water.evaluate(step, ratio)
         self.accelerate()

@@ -7,7 +7,7 @@ import numpy as np
 from continuum_sph.builders.parts.air import AIR, air_fluid, air_pores, dry_pores, specific_weights, with_air
 from continuum_sph.builders.parts.faces import enclosing, pressure_face
 from continuum_sph.builders.parts.held_soil import held_ground
-from continuum_sph.builders.parts.reservoirs import reservoir, spare
+from continuum_sph.builders.parts.reservoirs import halves, reservoir, spare
 from continuum_sph.builders.parts.sheet_pile import ground_at, sheet_pile
 from continuum_sph.builders.parts.soil import porous_section, soil_flow, soil_section
 from continuum_sph.builders.parts.stiffness import largest_modulus
@@ -182,11 +182,11 @@ def saturate(scene: Scene, soil: Floats, x: Floats, v: Floats, rho: Floats) -> t
 
 def water_counts(scene: Scene, soil: Floats) -> tuple[int, int]:
     """Particles of water in the tank at the start, those in pores of ``soil`` (s, 2) m included, and particles that
-    wait for reservoirs to let them in."""
+    wait for reservoirs to let them in, or to be halves of others."""
     x = np.concatenate((water_particles(scene, pore_law(scene, soil))[0], pore_water(scene, soil)[0]))
     if scene.pile:
         x = x[~sheet_pile(scene.pile, scene.numerics.spacing).holds(x)]
-    return len(x), spare(scene, x)
+    return len(x), spare(scene, x) + halves(scene, len(soil), porous_section(scene).porosity)
 
 
 def ground_of(scene: Scene, *, hasty: bool = False) -> tuple[SoilFlow | Frame, Skeleton]:
@@ -224,7 +224,8 @@ def seepage_flow(scene: Scene, *, hasty: bool = False) -> Seepage:
         x, v = np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores)))
         rho = np.concatenate((rho, np.full(len(pores), scene.air.density)))
     present, top = len(x), height + margin
-    waiting = spare(scene, x[:wet])
+    spared = spare(scene, x[:wet])
+    waiting = spared + halves(scene, skeleton.count, section.porosity)
     berth = berths(present + waiting, width, top, BERTH * law.smoothing.support)
     if waiting:
         x, v = np.concatenate((x, berth[present:])), np.concatenate((v, np.zeros((waiting, 2))))
@@ -265,7 +266,7 @@ def seepage_flow(scene: Scene, *, hasty: bool = False) -> Seepage:
         stiff = law.state.density * law.state.sound_speed**2
         names = names_of(scene.reservoir, "reservoir")
         kept = [reservoir(it, name, width) for name, it in zip(names, scene.reservoir, strict=True)]
-        both.supply = Supply(layer, kept, berth, spacing, law.state.density, stiff, scene.gravity)
+        both.supply = Supply(layer, kept, berth, spacing, law.state.density, stiff, scene.gravity, spared)
         both.supply.keep(0.0)
     both.start()
     return both

@@ -8,6 +8,7 @@ import numpy as np
 from continuum_sph.scene.reservoir import ReservoirSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Seepage, Supply
+from continuum_sph.seepage.halving import HEAVY
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
@@ -71,6 +72,12 @@ def spare(scene: Scene, x: Floats) -> int:
     rows = math.ceil(scene.highest / scene.numerics.spacing) + 1
     present = int((x[:, 1] < scene.highest).sum())
     return max(round(scene.inner[0] / scene.numerics.spacing) * rows - present, 0) + 1
+
+
+def halves(scene: Scene, soil: int, porosity: float) -> int:
+    """Particles of water that wait to be halves of what comes into pores (`seepage.halving`) about ``soil`` particles:
+    full pores hold at most 4/3 as many as there are of these, and have as many at the start."""
+    return soil // 3 + 1 if scene.reservoir and HEAVY * porosity < 1.0 else 0
 
 
 def reservoir(section: ReservoirSection, name: str, width: float) -> Reservoir:

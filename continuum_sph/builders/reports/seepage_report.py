@@ -150,7 +150,7 @@ def cost(scene: Scene, out: Report, law: Law, step: float, there: Counts) -> Non
     of_soil = HELD_BYTES if soil_section(scene).held else MOVING_BYTES
     out.row("memory", (BYTES * (fluid + walls) + of_soil * there.soil) / 2**20, "MiB")
     if there.waiting:
-        out.row("particles that wait", there.waiting, "", "for reservoirs to let them in")
+        out.row("particles that wait", there.waiting, "", "for reservoirs to let them in, or to be halves of others")
     # Half of what waits is in, taken over a run.
     parts = [(PORE_WATER, there.soil + there.fluid + 0.5 * there.waiting)]
     if not soil_section(scene).held:

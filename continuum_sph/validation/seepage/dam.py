@@ -61,14 +61,16 @@ def held_between(
     given: Given, most: int, **options: float | bool
 ) -> Seepage:  # fmt: skip
     """Ground that is held at ``soil`` (s, 2) m in a tank (width, height), m, water at ``water`` (n, 2) m under
-    ``pressure`` (n,) Pa, and ``pools``; ``most`` particles of water at once;  options: of the water's `Law`."""
+    ``pressure`` (n,) Pa, and ``pools``;  ``most`` particles of water at once, but for halves;  options: of the water's
+    `Law`."""
     (width, height), smoothing = size, Smoothing("wendland", given.ratio * spacing)
     layers = int(np.ceil(smoothing.support / spacing - 0.5 - 1e-9))
     walls, state = tank_walls(width, height, spacing, layers), Tait(WATER, given.sound_speed)
     frame = Frame(soil, spacing**2, POROSITY, given.permeability)
     law = {"alpha": 0.1, "diffusion": 0.02, "noise": LINEAR, "cut": True, "corrected": True, "shifting": 0.0} | options
     rules = Law(smoothing, spacing, (Fluid(state),), (0.0, -GRAVITY), **law)  # type: ignore[arg-type]
-    margin, present = layers * spacing, len(water)
+    margin, present, spare = layers * spacing, len(water), most - len(water)
+    most += len(soil) // 3
     berth = berths(most, width, height + margin, BERTH * smoothing.support)
     x = np.concatenate((water, berth[present:], walls))
     rho = np.full(most, WATER)
@@ -84,7 +86,7 @@ def held_between(
     both = Seepage(flow, frame)
     both.start()
     layer.mass[:present] *= flow.porosity[:present]
-    both.supply = Supply(layer, pools, berth, spacing, WATER, WATER * given.sound_speed**2, GRAVITY)
+    both.supply = Supply(layer, pools, berth, spacing, WATER, WATER * given.sound_speed**2, GRAVITY, spare)
     both.supply.keep(0.0)
     both.start()
     return both

@@ -23,7 +23,7 @@ def supply(*pools, rows=4, spare=200):
     n = len(berth)
     mass = np.where(np.arange(n) < len(x), 1000.0 * SPACING**2, 0.0)
     layer = Layer(n, np.concatenate((x, berth[len(x) :])), np.zeros((n, 2)), mass, np.full(n, 1000.0))
-    return Supply(layer, pools, berth, SPACING, 1000.0, 1e6, 9.81)
+    return Supply(layer, pools, berth, SPACING, 1000.0, 1e6, 9.81, spare)
 
 
 def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are():
