@@ -6,6 +6,7 @@ import numpy as np
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.seepage.sheet_pile import SheetPile
 from continuum_sph.validation.tanks import level_ground, tank_scene
 from porescale.common.evidence.validations import Measured, Validations
 
@@ -54,10 +55,11 @@ def rates(rows: int, until: float = UNTIL) -> tuple[float, float]:
 
 
 @functools.cache
-def kept(rows: int, until: float = UNTIL) -> float:
-    """Share of what goes into the ground that does not come out."""
+def shares(rows: int, until: float = UNTIL) -> tuple[float, float]:
+    """Share of what goes into the ground that does not come out, and what comes out over the exact discharge."""
     into, out = rates(rows, until)
-    return 1.0 - out / into
+    exact = 1000.0 * 0.03 * (UPSTREAM - DOWNSTREAM) * SheetPile(0.5, rows, SIDE / GROUND).discharge
+    return 1.0 - out / into, out / exact
 
 
 @VALIDATIONS.row(
@@ -70,4 +72,18 @@ def kept(rows: int, until: float = UNTIL) -> float:
 )
 def row() -> Measured:
     """Share of what passes under a sheet pile that ground of 10 rows keeps, by slopes over 70 s."""
-    return Measured.absolute(0.0, kept(10))
+    return Measured.absolute(0.0, shares(10)[0])
+
+
+@VALIDATIONS.row(
+    "continuum.discharge_under_a_pile_lasts",
+    source="exact: conformal mapping of ground that ends 1.5 T beside the sheet (the way of Harr 1962); s/T 0.5",
+    because="in water that moves the tip of a sheet is known to 0.4 spacings, 5.1 % of the discharge with 10 rows, as "
+    "d ln q/ds is -1.28/T; a hundredth of what goes in stays",
+    tolerance=0.06,
+    slow=True,
+)
+def lasting_row() -> Measured:
+    """What comes out beside a sheet pile from 10 to 80 s, while the water of the ground is replaced by half, over the
+    exact discharge; 10 rows."""
+    return Measured.absolute(1.0, shares(10)[1])
