@@ -103,13 +103,11 @@ def place(x: Floats, at: int) -> str:
 class JumpCheck:
     """Positions of particles at the last check, and the distance covered by the fastest since.
 
-    A particle that came farther than `FARTHER` such ways and a spacing did not go there.  strips : (left, right) m of
-    reservoirs, whose particles come and go.
+    A particle that came farther than `FARTHER` such ways and a spacing did not go there.
     """
 
     def __init__(self, spacing: float) -> None:
         self.spacing = spacing
-        self.strips: Sequence[tuple[float, float]] = ()
         self.reset()
 
     def reset(self) -> None:
@@ -124,15 +122,19 @@ class JumpCheck:
             self._way += (time - self._time) * max(max_speed, self._max_speed)
         self._time, self._max_speed = time, max_speed
 
-    def check(self, x: Floats, mass: Floats, now: Now) -> None:
-        """Unstable when a particle of ``mass`` (n,) kg/m, 0: not there, has jumped to its place ``x`` (n, 2) m."""
+    def check(self, x: Floats, mass: Floats, now: Now, renewed: NDArray[np.bool_] | None = None) -> None:
+        """Unstable when a particle of ``mass`` (n,) kg/m, 0: not there, has jumped to its place ``x`` (n, 2) m.
+
+        renewed (n,) : those that were put where they are, which is forgotten then: False is written.
+        """
         there = mass > 0.0
-        for left, right in self.strips:
-            there &= (x[:, 0] < left) | (x[:, 0] > right)
         if self._seen is not None and self._there is not None:
             gone = np.hypot(x[:, 0] - self._seen[:, 0], x[:, 1] - self._seen[:, 1])
-            jumped = there & self._there & ~(gone <= FARTHER * self._way + self.spacing)
+            stayed = there & self._there if renewed is None else there & self._there & ~renewed
+            jumped = stayed & ~(gone <= FARTHER * self._way + self.spacing)
             if jumped.any():
                 at = int(jumped.argmax())
                 raise Unstable(place(x, at), "way since the last look", float(gone[at]), "m", *now)
         self._seen, self._there, self._way = x.copy(), there, 0.0
+        if renewed is not None:
+            renewed[:] = False

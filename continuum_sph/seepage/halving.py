@@ -27,7 +27,7 @@ def halve(flow: Any, whole: float, reserve: int) -> None:
     """Part particles of water of a ``flow`` (`PoreFlow`) that are too heavy for the pores they are in, as far as there
     are particles without mass beyond a ``reserve``;  whole : mass of one in the open, kg/m.
 
-    Overwrites x, mass and what is in COPIED of both halves, and the excess of the new one.
+    Overwrites x, mass and what is in COPIED of both halves, and excess and `renewed` of the new one.
     """
     layer, n = flow.layer, flow.layer.fluid
     mass, porosity = layer.mass[:n], flow.porosity
@@ -53,3 +53,4 @@ def halve(flow: Any, whole: float, reserve: int) -> None:
         values = getattr(layer, name)
         values[other] = values[one]
     flow.excess[other] = flow.excess[one]
+    layer.renewed[other] = True

@@ -296,7 +296,7 @@ class Supply:
                 1.0 + self.density * self.gravity * depth / self.stiffness
             )
             layer.rate[i] = layer.rate_before[i] = 0.0
-            layer.mass[i] = self.whole
+            layer.mass[i], layer.renewed[i] = self.whole, True
             pool.let_in += self.whole
         if not len(free):
             raise NoneLeftError(pool.name, pool.level, target)

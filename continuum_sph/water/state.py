@@ -49,6 +49,7 @@ class Layer:
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
     power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED; (0, 6) without `keep_budget`
     energy: Floats = field(init=False)  # the same summed over time, J/m
+    renewed: NDArray[np.bool_] = field(init=False)  # (fluid,) those that were put where they are since the last look
     has_budget: bool = field(init=False, default=False)  # whether a budget of them is kept
 
     def __post_init__(self) -> None:
@@ -63,6 +64,7 @@ class Layer:
         self.rate, self.rate_before = np.zeros(self.fluid), np.zeros(self.fluid)
         self.predicted, self.pressure = np.zeros(self.fluid), np.zeros(n)
         self.record, self.length = np.zeros((n, 8)), np.zeros(n)
+        self.renewed = np.zeros(self.fluid, np.bool_)
         self.properties, self.lengths = np.zeros((0, 2)), np.zeros((0, 2))
         self.ghost, self.facing, self.matrix = np.zeros((0, 2)), np.zeros((0, 4)), np.zeros((0, 4))
         self.power, self.energy = np.zeros((0, 6)), np.zeros((0, 6))

@@ -218,7 +218,6 @@ def assemble(scene: Scene) -> Assembly:
     both = seepage_flow(scene)
     water = PoreWaterPart(scene, both.water)
     soil = HeldSoilPart(scene, both.water) if isinstance(both.ground, Frame) else wet_soil(scene, both.ground)
-    water.jumps.strips = [(it.left, it.right) for it in scene.reservoir]
     mixture = MixturePart(both, water, soil, air=scene.air is not None)
     parts: list[Part] = [water, soil, mixture]
     if both.supply:

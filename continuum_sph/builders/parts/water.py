@@ -74,7 +74,7 @@ class WaterPart(Part):
             "acceleration": ("m/s²", layer.acceleration), "smoothing length": ("m", layer.length[:n]),
         }  # fmt: skip
         require_finite(recorded, now)
-        self.jumps.check(layer.x[:n], layer.mass[:n], now)
+        self.jumps.check(layer.x[:n], layer.mass[:n], now, layer.renewed)
         require_within(layer.mass[:n], Range("mass", "kg/m", 0.0, np.inf), np.arange(n), layer.x, now)
         inside = np.flatnonzero(self.inside())
         require_distinct(layer.x, inside, now)

@@ -5,9 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from continuum_sph.builders.sanity import JumpCheck, Now
 from continuum_sph.seepage.halving import COPIED, halve
 from continuum_sph.seepage.mixture import LINES, POROSITY, ROOM, SLIP_X, SLIP_Y, SOIL
 from continuum_sph.water.state import Layer
+from porescale.common.core.errors import Unstable
 
 WHOLE = 10.0  # kg/m, a spacing of 0.1 m
 WATER, PORES, WAITING = 4, 0.4, 3
@@ -68,3 +70,20 @@ def test_halves_are_not_parted_again_and_air_never_is():
     halve(flow, WHOLE, 0)
     np.testing.assert_array_equal(flow.layer.mass, mass)
     assert mass[3] == WHOLE
+
+
+def test_a_half_that_was_put_where_it_is_has_not_jumped_there():
+    flow, now = water(), Now(0, 0.0, "")
+    layer, looks = flow.layer, JumpCheck(0.1)
+    n = layer.fluid
+    layer.mass[WATER] = 1.0  # one that is taken out after the first look, and comes back as a half
+    looks.check(layer.x, layer.mass, now, layer.renewed)
+    layer.mass[WATER] = 0.0
+    halve(flow, WHOLE, 0)
+    assert layer.renewed[WATER] and layer.renewed.sum() < n
+    layer.x[WATER, 0] += 5.0
+    looks.check(layer.x, layer.mass, now, layer.renewed)
+    assert not layer.renewed.any()
+    layer.x[WATER, 0] -= 5.0
+    with pytest.raises(Unstable, match="way since the last look"):  # the twin that must fail
+        looks.check(layer.x, layer.mass, now, layer.renewed)
