@@ -80,7 +80,8 @@ def test_a_half_that_was_put_where_it_is_has_not_jumped_there():
     looks.check(layer.x, layer.mass, now, layer.renewed)
     layer.mass[WATER] = 0.0
     halve(flow, WHOLE, 0)
-    assert layer.renewed[WATER] and layer.renewed.sum() < n
+    assert layer.renewed[WATER]
+    assert layer.renewed.sum() < n
     layer.x[WATER, 0] += 5.0
     looks.check(layer.x, layer.mass, now, layer.renewed)
     assert not layer.renewed.any()
