@@ -11,11 +11,10 @@ its way through the soil: along it water has parted by 1/n as it came in.  Mass,
 stay as they are.  With n between a third and two thirds it is parted once.  Halves that come into the open stay halves.
 """
 
-from typing import Any
-
 import numpy as np
 
 from continuum_sph.seepage.mixture import INSIDE, ROOM, SOIL
+from continuum_sph.seepage.pores import PoreFlow
 
 HEAVY = 1.5
 """Mass over that of full pores from which on a particle is parted: its halves are not below 0.75."""
@@ -23,8 +22,8 @@ COPIED = ("v", "density", "predicted", "rate", "rate_before", "smoothed", "drift
 """What halves have of the whole."""
 
 
-def halve(flow: Any, whole: float, reserve: int) -> None:
-    """Part particles of water of a ``flow`` (`PoreFlow`) that are too heavy for the pores they are in, as far as there
+def halve(flow: PoreFlow, whole: float, reserve: int) -> None:
+    """Part particles of water of a ``flow`` that are too heavy for the pores they are in, as far as there
     are particles without mass beyond a ``reserve``;  whole : mass of one in the open, kg/m.
 
     Overwrites x, mass and what is in COPIED of both halves, and excess and `renewed` of the new one.
