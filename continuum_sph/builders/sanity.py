@@ -130,8 +130,9 @@ class JumpCheck:
         there = mass > 0.0
         if self._seen is not None and self._there is not None:
             gone = np.hypot(x[:, 0] - self._seen[:, 0], x[:, 1] - self._seen[:, 1])
-            stayed = there & self._there if renewed is None else there & self._there & ~renewed
-            jumped = stayed & ~(gone <= FARTHER * self._way + self.spacing)
+            jumped = there & self._there & ~(gone <= FARTHER * self._way + self.spacing)
+            if renewed is not None:
+                jumped &= ~renewed
             if jumped.any():
                 at = int(jumped.argmax())
                 raise Unstable(place(x, at), "way since the last look", float(gone[at]), "m", *now)

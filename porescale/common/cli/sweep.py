@@ -68,7 +68,7 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.record.series import run_table
         from porescale.common.studies import ensemble_files, sweep_files
         from porescale.common.studies.ensemble import Repeats, ensembles, repeated
-        from porescale.common.studies.parameter_table import varied
+        from porescale.common.studies.parameter_table import ENSEMBLE, SWEEP, varied
         from porescale.common.studies.runner import Campaign
 
         start = require_scene(scene, package.name)
@@ -91,7 +91,7 @@ def command(package: Package) -> Callable[..., int]:
         lines = sweep_files.ensemble_lines(ensembles(points, ends), rows or columns_at_end(ends), run_table)
         for text in ensemble_files.printed(lines):
             print(text)
-        print(f"{folder / sweep_files.NAME}.csv, .md, .png" + (f", {ensemble_files.NAME}.csv" if asked else ""))
+        print(f"{folder / SWEEP}.csv, .md, .png" + (f", {ENSEMBLE}.csv" if asked else ""))
         return conclude(ends) or int(not settings and not quality and ensemble_files.failed(lines))
 
     return sweep

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 from porescale.common.core.statistics import LEAST, LEVEL, Sample, bootstrap
 from porescale.common.evidence import files
 from porescale.common.studies.ensemble import FAIL, OPEN, Ensemble, Judged, judge
+from porescale.common.studies.parameter_table import ENSEMBLE
 from porescale.common.studies.quantities import title
 from porescale.common.studies.runner import Ended
 
-NAME = "ensemble"
 WORTH = ("mean", "standard deviation", "standard error", "t low", "t high", "bootstrap low", "bootstrap high")
 """What a sample is worth: columns of tables."""
 Number = Callable[[Ended, Mapping[str, Any]], float]
@@ -93,8 +93,9 @@ def markdown(lines: Sequence[Line]) -> list[str]:
     text = [
         "", "## Ensembles", "",
         f"Means over repeats ± half of Student's interval at {100 * LEVEL:g} %, beside it the bootstrap's (BCa); all "
-        f"digits are in {NAME}.csv. A verdict compares Student's interval with what expected.toml allows, which is for "
-        "the scene as it is.", "", *(f"- {one.of.name}: {one.said()}, over {', '.join(one.over)}" for one in found), "",
+        f"digits are in {ENSEMBLE}.csv. A verdict compares Student's interval with what expected.toml allows, which is "
+        "for the scene as it is.", "",
+        *(f"- {one.of.name}: {one.said()}, over {', '.join(one.over)}" for one in found), "",
     ]  # fmt: skip
     numbers = [line for line in lines if line.judged is not None]
     many, judged = len(found) > 1, any(line.judged.verdict for line in numbers if line.judged)

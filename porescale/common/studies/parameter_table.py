@@ -32,7 +32,9 @@ AS_IT_IS = "as-it-is"
 """Name of the point that sets nothing."""
 LONGEST = 80
 MOST = 100_000
-FILES = "sweep.csv", "sweep.md", "sweep.png", "ensemble.csv", "report.html"
+SWEEP, ENSEMBLE = "sweep", "ensemble"
+"""Names of the files of a sweep, and of its repeats."""
+FILES = f"{SWEEP}.csv", f"{SWEEP}.md", f"{SWEEP}.png", f"{ENSEMBLE}.csv", "report.html"
 """What lies beside the folders of points, so that none may have its name."""
 
 

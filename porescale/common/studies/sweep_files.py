@@ -12,11 +12,10 @@ from porescale.common.evidence import files
 from porescale.common.record.columns import TIME
 from porescale.common.studies import ensemble_files, ensemble_picture
 from porescale.common.studies.ensemble import Ensemble, ensembles
-from porescale.common.studies.parameter_table import Point
+from porescale.common.studies.parameter_table import ENSEMBLE, SWEEP, Point
 from porescale.common.studies.quantities import Columns, measured, title
 from porescale.common.studies.runner import FINISHED, Ended
 
-NAME = "sweep"
 PANELS = 12
 """Columns that a picture shows."""
 ROUND_OFF = 1e-12
@@ -66,13 +65,13 @@ def write(
     found = ensembles(points, ends)
     repeated = ensemble_lines(found, rows, tables)
     if repeated:
-        files.write_files(folder, {f"{ensemble_files.NAME}.csv": ensemble_files.csv_text(repeated)})
+        files.write_files(folder, {f"{ENSEMBLE}.csv": ensemble_files.csv_text(repeated)})
     if not ends:
         return
     lines = lines_of(ends, rows, tables)
     text = markdown(command, lines, ensemble_files.markdown(repeated) if repeated else ())
     drawn = ensemble_picture.picture(found, rows, tables) if found else picture(ends, rows, tables)
-    files.write_study(folder, NAME, csv=csv_text(lines), md=text, png=drawn)
+    files.write_study(folder, SWEEP, csv=csv_text(lines), md=text, png=drawn)
 
 
 def ensemble_lines(found: Sequence[Ensemble], rows: Rows, tables: Tables) -> list[ensemble_files.Line]:
@@ -88,7 +87,7 @@ def csv_text(lines: Sequence[Mapping[str, Any]]) -> str:
 def markdown(command: str, lines: Sequence[Mapping[str, Any]], more: Sequence[str] = ()) -> str:
     """The same as a table to read: four digits, empty columns left out;  more : lines that follow."""
     shown = [name for name in lines[0] if any(each[name] not in ("", None) for each in lines)]
-    parts = [f"# Sweep\n\nMade by `{command}`; the table with all digits is {NAME}.csv.\n\n![curves]({NAME}.png)\n"]
+    parts = [f"# Sweep\n\nMade by `{command}`; the table with all digits is {SWEEP}.csv.\n\n![curves]({SWEEP}.png)\n"]
     table = files.markdown_table(shown, [[_short(each[name]) for name in shown] for each in lines])
     return "\n".join([*parts, *table, *more]) + "\n"
 
@@ -117,7 +116,7 @@ def picture(ends: Sequence[Ended], rows: Rows, tables: Tables) -> bytes:
         axes.yaxis.get_offset_text().set_fontsize(7)
         axes.set_xlabel(TIME, fontsize=8)
     if len(columns) < len(named):
-        words = f"the {len(columns)} of {len(named)} columns that differ most; {NAME}.csv has how all of them end"
+        words = f"the {len(columns)} of {len(named)} columns that differ most; {SWEEP}.csv has how all of them end"
         figure.suptitle(words, fontsize=9)
     for axes in panels[len(columns) :]:
         axes.set_visible(False)

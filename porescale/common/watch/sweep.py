@@ -15,10 +15,9 @@ from porescale.common.record.card import FINISHED
 from porescale.common.record.columns import TIME
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
-from porescale.common.studies.ensemble_files import NAME as ENSEMBLES
 from porescale.common.studies.ensemble_picture import band
+from porescale.common.studies.parameter_table import ENSEMBLE, SWEEP
 from porescale.common.studies.sweep_files import COSTS
-from porescale.common.studies.sweep_files import NAME as TABLE
 from porescale.common.watch.growing import Growing, inside
 
 if TYPE_CHECKING:
@@ -87,7 +86,7 @@ class Points:
         many of how many), "lines" (its quantities, numbers as such)}."""
         made: dict[str, dict[str, Any]] = {}
         there = set(self.names())
-        for line in self._table(ENSEMBLES):
+        for line in self._table(ENSEMBLE):
             name, members = line.get("name", ""), line.get("members", "").split()
             if name not in made:
                 outcomes = {it: self._outcome(it) for it in members if it in there}
@@ -123,7 +122,7 @@ class Points:
         halves = over_time("series", times | {column: it.half for column, it in known.items()})
         return means | {"half": halves["data"]}
 
-    def _table(self, name: str = TABLE) -> list[dict[str, str]]:
+    def _table(self, name: str = SWEEP) -> list[dict[str, str]]:
         """The lines of sweep.csv, or another table, as they are; none where there is none."""
         path = self.folder / f"{name}.csv"
         if not inside(self.folder, path):
