@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from porescale.builders.checks.contact import angles_for_friction, material_doubts, wall_friction_doubts
-from porescale.builders.checks.discs_alone import left_out, uncertain_films
+from porescale.builders.checks.discs_alone import left_out
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
 from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
@@ -137,8 +137,6 @@ def derive(scene: Scene) -> Derived:
     if scales:
         doubts = too_few_cells(frames, scales.spacing), too_light(frames, scales.spacing, scales.density)
         warnings += [*filter(None, doubts), *left_out(scene), *beside_the_bed(scene)]
-        if sizes:
-            warnings += uncertain_films(scene, scales.spacing, sizes[0])
         variation = check_regime(scene, scales, speed, sizes, faults, warnings)
     free = grain_count(scene) - len(scene.disc)
     for number in scene.loads.grains if scene.loads else ():

@@ -6,16 +6,17 @@ alpha = arccosh(1 + g/R), as alpha goes to 0).  The lattice bears the film of a 
 by a share of a cell, and discs cover cells with the radius R + A/R, so that their gap there is narrower by
 A (1/R1 + 1/R2) = A/R*.  What it lacks,
 
-    d = (D h - A/R*)(1 - g/3h)^p, not below 0,      D, p: 0.37, 1 between discs, 0.48, 3 at a wall,
+    d = (D h - A/R*)(1 - g/3h)^p, not below D h - g,      D, p: 0.37, 1 between discs, 0.48, 3 at a wall,
     dF = -3 sqrt(2) pi mu ((R*/g)^(3/2) - (R*/(g + d))^(3/2)) V_n,     0 < g < g_c,
 
 is added here;  A: 1.5 h² times the magic parameter (solid/exact_wall.py).  D and p were measured with exact walls, on
 discs 8 to 30 cells wide that close on each other at random angles and places, and 8 to 20 cells wide on a wall, which
-is two outlines that end within cells, and one; A/R* is derived.  The mean of force and correction over angles and
-places is within 5 % of the exact force, at tau 0.6 to 1, too, but where discs come so near that they share full cells,
-g - A/R* < 0.08 h.  It acts in the contact steps dt, velocities half a step back: stable for six films around the
-lighter disc (of mass m), each against a neighbour as light, if C dt <= m/3 (integrate.packing_factor with a damping
-alone: 2 * 3 C/m <= 2/dt; C is at most that of the whole film), which sets the thinnest film
+is two outlines that end within cells, and one;  A/R* is derived.  Outlines that meet in the lattice, g < A/R*, leave a
+tenth of the cells open that they share (coverage/shared.py): it bears the film of D h still.  The mean of force and
+correction over angles and places is within 5 % of the exact force, at tau 0.6 to 1, too.  It acts in the contact steps
+dt, velocities half a step back: stable for six films around the lighter disc (of mass m), each against a neighbour as
+light, if C dt <= m/3 (integrate.packing_factor with a damping alone: 2 * 3 C/m <= 2/dt;  C is at most that of the whole
+film), which sets the thinnest film
 
     g_min = R* (9 sqrt(2) pi mu dt/m)^(2/3);     thinner ones count as g_min, touching ones as none.
 
@@ -42,9 +43,6 @@ FILM = 3 * math.sqrt(2) * math.pi
 BETWEEN_DISCS, AT_A_WALL = (0.37, 1), (0.48, 3)
 """D, cells by which the thinnest films are wider to the lattice than between the outlines that it has, and p."""
 
-APART = 0.08
-"""Cells by which outlines of two discs in the lattice lie apart where what it bears is much the same at all places."""
-
 
 class FilmLaw(NamedTuple):
     """viscosity : dynamic, Pa s;  spacing : h, m;  cut : g_c, m, at most 3 h: beyond nothing is added;  dt : contact
@@ -61,7 +59,8 @@ class FilmLaw(NamedTuple):
 def wider(gap, radius, measured, law):
     """By how much (m) the ``gap`` (m) of the film that the lattice bears is wider; 0 at 3 h.  See ``film``."""
     cells, power = measured
-    return max(0.0, cells * law.spacing - law.shift / radius) * (1.0 - gap / (CELLS * law.spacing)) ** power
+    lacks = cells * law.spacing
+    return max(lacks - gap, max(0.0, lacks - law.shift / radius) * (1.0 - gap / (CELLS * law.spacing)) ** power)
 
 
 @inline

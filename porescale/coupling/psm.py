@@ -28,6 +28,7 @@ from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.coverage.ring import Ring
 from porescale.coupling.coverage.rows import BLOCK, Motion, list_bands, make_bands, make_patches, rasterize
 from porescale.coupling.coverage.shape import Shape
+from porescale.coupling.coverage.shared import keep_open
 from porescale.coupling.coverage.soft_rim import MARGIN, SoftRim
 from porescale.coupling.load import add_rows, half_step_correction
 from porescale.coupling.psm_kernels import AT_ONCE, RowWork, sweep
@@ -71,10 +72,11 @@ class SaturatedCells:
     discs' velocity.  Discs cover cells with ``covering_radius``, larger by ``radius_shift`` (cells²) over the radius.
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
     them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
-    that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;
-    they go as their owner says.  operator: the row of the solid operator.  cut: numbers of the discs that a free-slip
-    side across y cuts, set by the owner: with what the side mirrors such a disc makes one body that goes along x alone.
-    A step allocates no array of the size of anything.
+    that overlap, see coverage/overlap.py.  body: the first disc of each disc's rigid body, set by the owner where cells
+    that two bodies share are to stay open (coverage/shared.py), else None.  polygon_load (p, 3), polygon_entrained (p,
+    2): of the polygons, as of discs; they go as their owner says.  operator: the row of the solid operator.  cut:
+    numbers of the discs that a free-slip side across y cuts, set by the owner: with what the side mirrors such a disc
+    makes one body that goes along x alone.  A step allocates no array of the size of anything.
     """
 
     def __init__(
@@ -117,6 +119,7 @@ class SaturatedCells:
         bands = len(self._bands.start) - 1
         self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
         self.pairs = np.zeros((0, 2), np.int64)
+        self.body: NDArray[np.int64] | None = None
         self._placed = np.full((discs, 2), np.nan)  # centres for which the patches are filled
         self._stands = np.zeros(self._placed.shape, np.bool_)
         self._summed = False  # whether the areas that the body force pushes are those of the patches
@@ -148,8 +151,7 @@ class SaturatedCells:
         if shapes:
             sizes = [shape.size(fluid, shift) for shape in shapes]
             self.bodies = Bodies(fluid, len(high), shapes, rectangles, turns_back=self.operator.turns_back)
-            wide = np.append(wide, [size[0] for size in sizes])
-            high = np.append(high, [size[1] for size in sizes])
+            wide, high = (np.append(it, [size[k] for size in sizes]) for k, it in enumerate((wide, high)))
         return high, wide
 
     def _set_loads(self, count: int, force: Reals) -> None:
@@ -269,18 +271,19 @@ class SaturatedCells:
         self._placed[:] = centre
         if self.soft_rim:
             self.soft_rim.soften(self.covering_radius)
-        return self._rasterized(centre, velocity, spin, self.covering_radius, self.soft_rim)
+        motion = self._rasterized(centre, velocity, spin, self.covering_radius, self.soft_rim)
+        if self.body is not None:
+            keep_open(self._bands, self._patches, self.body, self.periodic_x, self._work.scratch)
+        return motion
 
-    def _rasterized(
-        self, centre: Reals, velocity: Reals, spin: Reals, radius: Reals, soft_rim: SoftRim | None
-    ) -> Motion:
+    def _rasterized(self, centre: Reals, velocity: Reals, spin: Reals, radius: Reals, rim: SoftRim | None) -> Motion:
         """The same, with discs of ``radius`` (n,) cells."""
         self._summed = False
         cover(centre, radius, self._patches, self._lines)
         if len(self.pairs):
             subtract_overlap(centre, radius, self.pairs, self._patches)
-        if soft_rim:
-            soft_rim.filter(self._patches)
+        if rim:
+            rim.filter(self._patches)
         if self.polygons:
             self.polygons.cover(self._patches, len(self.radius))
         if self.bodies:
@@ -290,9 +293,7 @@ class SaturatedCells:
 
     def _gathered(self, centre: Reals, velocity: Reals, spin: Reals) -> tuple[Reals, Reals, Reals]:
         """Centre, velocity and spin of all bodies, discs first."""
-        motion = centre, velocity, spin
-        if self.polygons:
-            motion = self.polygons.gather(*motion)
+        motion = self.polygons.gather(centre, velocity, spin) if self.polygons else (centre, velocity, spin)
         return self.bodies.gather(*motion) if self.bodies else motion
 
     def cover(self, centre: Reals, velocity: Reals, spin: Reals, *, bare: bool = False) -> None:

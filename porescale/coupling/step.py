@@ -28,7 +28,7 @@ from porescale.coupling.immersed_polygons import ImmersedPolygons, corners_of
 from porescale.coupling.lubrication import CELLS, Lubrication
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import solid_operator as solid_operator_of
-from porescale.dem.bodies.rigid import clumps_of
+from porescale.dem.bodies.rigid import body_of, clumps_of
 from porescale.dem.grains import Grains
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
@@ -100,6 +100,7 @@ class Coupled:
             if self.polygons:
                 problem = "has no films between polygons: what the lattice lacks was measured between round surfaces"
                 raise InputError(Fault("lubrication", True, problem, repair="leave it out"))
+            self.saturated.body = body_of(grains)[seen]
             self.lubrication = Lubrication(
                 grains, self.hydraulic_radius, viscosity=scales.density * scales.viscosity,
                 spacing=scales.spacing, cut=film_gap * scales.spacing, dt=scales.step / contact_steps,

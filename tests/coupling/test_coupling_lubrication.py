@@ -1,4 +1,7 @@
-"""Films: the squeeze-film law below a cell, equal and opposite, stable at its thinnest; off unless asked for."""
+"""Films: the squeeze-film law below a cell, equal and opposite, stable at its thinnest; off unless asked for.
+
+Where films are corrected cells that two bodies share keep a tenth open, and no others change.
+"""
 
 import math
 
@@ -7,11 +10,15 @@ import pytest
 
 from porescale.common.core.errors import InputError
 from porescale.coupling import lubrication as law
+from porescale.coupling.coverage.shared import MOST
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.motion.control import Moved
+from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling import setups as lab
 
 EPS = np.finfo(float).eps
@@ -52,7 +59,7 @@ def test_films_between_discs_and_at_walls_follow_the_law(plain):
     force, _ = films(grains, plain=plain)
 
     def c(radius, gap, measured):
-        seen = gap + (measured[0] - SHIFT / radius) * (1 - gap / law.CELLS) ** measured[1]
+        seen = max(measured[0], gap + (measured[0] - SHIFT / radius) * (1 - gap / law.CELLS) ** measured[1])
         return law.FILM * MU * ((radius / gap) ** 1.5 - (radius / seen) ** 1.5)
 
     between, wall = c(20 / 9, 0.5, law.BETWEEN_DISCS) * 0.03, c(5.0, 0.3, law.AT_A_WALL) * 0.03
@@ -75,7 +82,15 @@ def test_what_is_added_is_a_share_of_the_film_and_ends_with_the_last_cell(measur
         # next to the cut 3/2 of d/3, d at most D times 1e-12; and round-off of the two powers
         assert shares[-1] < 1e-12 + 4 * EPS
     least = SHIFT / measured[0]  # reduced radius where outlines in the lattice are nearer by all of D
-    assert added(0.2, 1.01 * least, measured=measured) > 0 == added(0.2, 0.99 * least, measured=measured)  # no thrust
+    assert added(0.5, 1.01 * least, measured=measured) > 0 == added(0.5, 0.99 * least, measured=measured)  # no thrust
+
+
+def test_outlines_that_meet_in_the_lattice_bear_the_film_that_it_lacks():
+    wide = law.BETWEEN_DISCS[0]
+    for radius in (0.5, 1.0, 2.5):  # outlines nearer by 0.56, 0.28 and 0.11 cells
+        for gap in (0.01, 0.1):
+            assert added(gap, radius) == pytest.approx(1 - (gap / wide) ** 1.5, rel=20 * EPS)
+    assert added(0.2, 2.5) > 1 - (0.2 / wide) ** 1.5
 
 
 def test_outlines_that_are_wider_in_the_lattice_make_up_for_a_part_of_the_film():
@@ -156,7 +171,7 @@ def lubricated(on=True):
 
 
 def test_no_film_unless_asked_for():
-    assert lab.handful().lubrication is None
+    assert (lab.handful().lubrication, lab.handful().saturated.body) == (None, None)
 
 
 def test_a_restored_run_with_films_goes_on_bit_for_bit():
@@ -220,3 +235,83 @@ def test_films_slow_an_approach():
         d = coupled.grains.discs
         speeds.append(d.velocity[0, 0] - d.velocity[1, 0])
     assert 0 < speeds[0] < 0.9 * speeds[1]
+
+
+PLACES = np.array([[4.1, 8.4], [10.2, 10.9], [7.3, 15.2], [37.5, 8.1], [30.8, 6.2]])
+"""Three that nearly touch, of which the first also meets the fourth across a periodic side, and one beside that."""
+RADIUS = 3.3, 3.3, 2.0, 3.3, 3.5
+
+
+def covered(body, *, periodic=True, many=1, dtype=np.float64, rim=False):
+    """Solid fractions of each disc, (n, cells of its patch), and of all, with the given bodies of the discs."""
+    sides = Sides(*["periodic"] * 4) if periodic else Sides(left="wall", right="wall", bottom="wall", top="wall")
+    fluid = Fluid(40, 20 * many, 0.8, dtype=dtype, sides=sides)
+    places = np.concatenate([PLACES + np.array([0, 20 * k]) for k in range(many)])
+    cells = SaturatedCells(fluid, np.tile(RADIUS, many), soft_rim=rim)
+    cells.body = None if body is None else np.concatenate([np.array(body) + 5 * k for k in range(many)])
+    still = np.zeros_like(places)
+    cells.cover(places, still, still[:, 0])
+    it = cells._patches
+    each = [it.fraction[a : a + h * w].copy() for a, h, w in zip(it.start, it.height, it.stride, strict=True)]
+    return each, cells.solid.copy(), cells
+
+
+def in_box(cells, each):
+    """Fraction of every disc in every cell of the box, (n, ny, nx): element by element."""
+    it, (ny, nx) = cells._patches, cells._shape
+    found = np.zeros((len(each), ny, nx))
+    for n, fraction in enumerate(each):
+        x, y = it.corner[n]
+        for j in range(it.height[n]):
+            for i in range(it.stride[n]):
+                inside = 0 <= x + i < nx and 0 <= y + j < ny
+                if fraction[j * it.stride[n] + i] and (inside or cells.periodic_x):
+                    found[n, (y + j) % ny, (x + i) % nx] += fraction[j * it.stride[n] + i]
+    return found
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("body", [[0, 1, 2, 3, 4], [0, 0, 2, 3, 4]])
+def test_shared_cells_are_scaled_to_the_most_and_others_left(body, periodic):
+    before, _, cells = covered(None, periodic=periodic)
+    plain = in_box(cells, before)
+    after, solid, cells = covered(body, periodic=periodic)
+    found, total = in_box(cells, after), plain.sum(axis=0)
+    owners = np.zeros(total.shape, int)
+    for one in set(body):
+        owners += plain[[k for k, b in enumerate(body) if b == one]].any(axis=0)
+    shared = (owners > 1) & (total > MOST)
+    expected = plain * np.where(shared, MOST / np.where(shared, total, 1), 1)
+    assert np.count_nonzero(shared) >= (3 if body[1] else 1)
+    np.testing.assert_allclose(found, expected, rtol=4 * np.finfo(float).eps)
+    np.testing.assert_allclose(solid, expected.sum(axis=0), rtol=8 * np.finfo(float).eps)
+
+
+def test_across_a_periodic_side_too():
+    before, _, cells = covered(None)
+    after = covered(range(5))[0]
+    changed = [not np.array_equal(a, b) for a, b in zip(after, before, strict=True)]
+    assert changed[3]
+    assert not np.array_equal(in_box(cells, after)[0, :, :7], in_box(cells, before)[0, :, :7])
+    one, walls = [covered(body, periodic=False)[0][0] for body in (None, [0, 0, 0, 3, 4])]
+    assert np.array_equal(one, walls)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_the_same_bits_by_one_thread_and_by_several(dtype):
+    """Few bodies are one thread's; forty times as many are not, in bands that begin elsewhere."""
+    one, _, _ = covered(range(5), dtype=dtype)
+    many, _, cells = covered(range(5), many=200, dtype=dtype)
+    assert len(cells._patches.fraction) > 8192 * 8
+    inner = slice(5, len(many) - 5)  # the first and the last meet others across the side above and below
+    for k, fraction in enumerate(many[inner]):
+        # places hundreds of cells up are rounded by as many eps, of rims of slope 1
+        np.testing.assert_allclose(fraction, one[k % 5], atol=4000 * 2 * np.finfo(dtype).eps)
+
+
+def test_bare_outlines_are_as_given():
+    _, _, cells = covered(range(5))
+    still = np.zeros_like(PLACES)
+    cells.cover(PLACES, still, still[:, 0], bare=True)
+    area = cells.solid.sum()
+    assert area == pytest.approx(np.pi * np.sum(np.square(RADIUS)), rel=1e-12)

@@ -25,6 +25,7 @@ from porescale.lbm.device.fluid import DeviceFluid
 from porescale.lbm.fluid import Fluid
 
 NX, NY = 38, 14
+PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
 WALLS = Sides(left="wall", right="wall", bottom="wall", top="slip")
 PLACES = np.array([[9.2, 6.1], [13.9, 7.3], [37.3, 13.2]])  # two that overlap, one across the corner of a periodic box
 ROW = np.array([[9.0, 6.0], [13.0, 7.0], [17.0, 6.0]])  # of which the middle one overlaps both
@@ -68,7 +69,7 @@ def both_same(**options):
     return same(gone(*started(device=True, **options)), expected)
 
 
-@pytest.mark.parametrize("sides", [Sides(), WALLS], ids=["periodic", "walls"])
+@pytest.mark.parametrize("sides", [PERIODIC, WALLS], ids=["periodic", "walls"])
 @pytest.mark.parametrize(("dtype", "force"), [(np.float32, NO_FORCE), (np.float64, FORCE)], ids=["float32", "float64"])
 def test_exact_walls_give_the_cpus_bits(dtype, force, sides):
     assert both_same(dtype=dtype, sides=sides, force=force)
@@ -127,6 +128,21 @@ def test_members_of_a_clump_that_overlap_hold_their_union():
         found.append(gone(fluid, cells, 1, places=ROW))
     assert same(*found)
     assert not same(found[1], gone(*started(device=True), 1, places=ROW))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("sides", [PERIODIC, WALLS], ids=["periodic", "walls"])
+def test_cells_that_two_bodies_share_stay_open(dtype, sides):
+    """One of the discs meets another across a periodic corner."""
+    found, places = [], [[9.2, 6.1], [15.4, 7.3], [4.6, 9.4]]
+    for body in (np.arange(3), None):
+        for device in (False, True):
+            fluid, cells = started(device=device, dtype=dtype, sides=sides)
+            cells.body = body
+            found.append(gone(fluid, cells, places=places))
+    assert same(*found[:2])
+    assert same(*found[2:])
+    assert not same(found[0], found[2])
 
 
 @pytest.mark.parametrize(

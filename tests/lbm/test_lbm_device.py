@@ -17,7 +17,8 @@ from porescale.lbm.fluid import Fluid
 
 FORCE = (2e-4, -1e-4)
 BOXES = {
-    "periodic": Sides(),
+    "closed": Sides(),
+    "periodic": Sides("periodic", "periodic", "periodic", "periodic"),
     "sides": Sides(
         left="velocity",
         right="pressure",

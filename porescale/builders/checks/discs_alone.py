@@ -7,18 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from porescale.builders.checks.regime import UNIT
-from porescale.builders.initial.fluid_options import collision_options, has_soft_rim
+from porescale.builders.initial.fluid_options import has_soft_rim
 from porescale.common.core.errors import Fault
-from porescale.coupling.lubrication import APART
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.lbm.collision.choose import choose
 
 if TYPE_CHECKING:
     from porescale.scene.scene import Scene
-
-NARROW_MAGIC = 0.0417
-"""Magic parameter with which outlines lie nearly where they are: the best one for narrow gaps, too."""
 
 
 def check_beside_polygons(scene: Scene) -> list[Fault]:
@@ -40,7 +34,7 @@ def check_beside_polygons(scene: Scene) -> list[Fault]:
 
 
 def left_out(scene: Scene) -> list[str]:
-    """Warnings of what a scene in fluid asks and only some of its bodies have."""
+    """Warnings of what a scene in fluid asks and only some of its bodies, or operators, have."""
     assert scene.fluid
     found = []
     ratio = (scene.grains.hydraulic_radius_ratio or 1.0) if scene.grains else 1.0
@@ -67,33 +61,12 @@ def left_out(scene: Scene) -> list[str]:
         )
     if scene.fluid.rim == "soft" and not (free_discs(scene) or scene.disc):
         found.append("fluid.rim = 'soft' is not used: rims of discs are softened, by their radius, and there are none")
-    return found
-
-
-def uncertain_films(scene: Scene, spacing: float, smallest: float) -> list[str]:
-    """Warnings of films that are not within what is measured;  spacing, diameter of the ``smallest`` disc: m."""
-    assert scene.fluid
-    if not scene.lubrication:
-        return []
-    found, fluid = [], scene.fluid
-    operator = SOLID_OPERATORS[fluid.solid_operator]
-    if not operator.films:
+    operator = scene.fluid.solid_operator
+    if scene.lubrication and not SOLID_OPERATORS[operator].films:
         able = " or ".join(repr(name) for name, it in SOLID_OPERATORS.items() if it.films)
         found.append(
-            f"[lubrication] was measured with fluid.solid_operator = {able}: with {operator.name!r} the forces of films"
+            f"[lubrication] was measured with fluid.solid_operator = {able}: with {operator!r} the forces of films"
             " may be a third off"
-        )
-    ratio = (scene.grains.hydraulic_radius_ratio or 1.0) if scene.grains else 1.0
-    reduced = 0.25 * ratio * smallest / spacing
-    nearer = operator.radius_shift * fluid.magic / reduced
-    chosen = "magic" in choose(**collision_options(fluid), **UNIT)._fields
-    if operator.films and chosen and nearer > APART and fluid.magic > NARROW_MAGIC:
-        less = nearer * NARROW_MAGIC / fluid.magic
-        found.append(
-            f"[lubrication]: discs {smallest / spacing:.3g} cells wide stand {nearer:.2g} cells nearer to each other in"
-            f" the lattice; at gaps below {nearer + APART:.2g} cells films between them are several times too strong in"
-            f" single places; fluid.magic = {NARROW_MAGIC:.3g} makes that {less + APART:.2g} cells, and films at walls"
-            " up to 16 % too strong"
         )
     return found
 

@@ -103,6 +103,7 @@ class DeviceBodies:
         self._cells = Tiles(begin, order, body, empty_on_device((fluid.ny, 2), np.int32), gained)
         self._row_load = to_device(np.zeros((count, int(rows.max(initial=0)), row_numbers)))
         self._pairs: tuple[Any, int, Any] | None = None
+        self._body: Any = None
         self._law: Any = None
 
     def set_pairs(self, pairs: Integers) -> None:
@@ -110,6 +111,10 @@ class DeviceBodies:
         order, begin = grouped(pairs, self.discs)
         heights = [int(self.patches.height[np.unique(order[a:b])].sum()) for a, b in pairwise(begin)]
         self._pairs = (to_device(begin), max(heights), to_device(order)) if heights else None
+
+    def set_body(self, body: Integers) -> None:
+        """The first disc of each disc's rigid body, (n,): cells that two share stay open, see ``SaturatedCells``."""
+        self._body = to_device(body)
 
     def send(self, motion: Motion, radius: Reals, softness: SoftRim | None, *, moved: bool) -> None:
         """Send places, where one has moved, and motion, and have the patches filled there.
@@ -156,6 +161,9 @@ class DeviceBodies:
         for theta in (self._motion.theta, self._theta2) if self.soft else ():
             self._run(cover.filter_rows, self._rows, theta, there, owners)
             self._run(cover.filter_columns, lines, theta, there, owners)
+        if self._body is not None:
+            cells = self._covered * TILE_WIDTH * TILE_HEIGHT
+            self._run(cover.keep_open, cells, self._covered, self.box, self._cells, self._body, there)
         self._run(sweeps.find_extents, self.box.ny, self.box, self._cells, there)
 
     def sweep(self, f: Any, parity: int, law: Any) -> None:

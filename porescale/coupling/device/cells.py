@@ -50,6 +50,8 @@ class DeviceSaturatedCells(SaturatedCells):
         """Send the bodies to the device; where there are discs only and none has moved, no more than their motion."""
         if self._pairs_there is not self.pairs:
             self._there.set_pairs(self.pairs)
+            if self.body is not None:
+                self._there.set_body(self.body)
             self._pairs_there, self._sent[:] = self.pairs, np.nan
         others = self.soft_rim or self.polygons
         moved = bool(others) or not np.array_equal(centre, self._sent)
