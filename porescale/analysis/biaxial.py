@@ -24,8 +24,9 @@ WINDOW = 0.01
 """Of axial strain, over which peak and dilatancy are taken."""
 LATE = 2.0 / 3.0
 """Share of the strain from where on a test is in its critical state."""
-LEAST = 40
-"""Rows below which a series holds no test."""
+LEAST, SHORTEST = 40, 2.5 * WINDOW
+"""Rows, and strain, below which a series holds no test: one of the least homogenise.strain, 3 of these windows, ends a
+step short of it."""
 
 
 def running(strain: Floats, values: Floats) -> tuple[Floats, Floats]:
@@ -60,7 +61,7 @@ def numbers(tests: Sequence[Mapping[str, Floats]]) -> list[dict[str, float]]:
     Raises InputError for a test without strength: one that ended before it began to shear.
     """
     every = [curves(series) for series in tests]
-    if any(len(it["strain"]) < LEAST or not it["strain"][-1] > 3.0 * WINDOW for it in every):
+    if any(len(it["strain"]) < LEAST or not it["strain"][-1] > SHORTEST for it in every):
         raise InputError(Fault("series.csv", None, "holds no test", repair="remove that run folder"))
     sines, openings = peaks(every)
     return [

@@ -6,6 +6,7 @@ import math
 import shlex
 import tomllib
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
@@ -14,7 +15,7 @@ from cyclopts import Parameter
 from porescale.cli.homogenise import homogenise
 from porescale.common.api.folders import output_folder
 from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say
-from porescale.common.cli.sweep import Again, Jobs, Scheduler, Vary, laid_over
+from porescale.common.cli.sweep import Again, Jobs, Scheduler, laid_over
 
 if TYPE_CHECKING:
     from porescale.common.core.statistics import Sample
@@ -60,7 +61,7 @@ def volume(
     scene: Scene,
     /,
     *,
-    vary: Vary = None,
+    vary: Annotated[list[str] | None, Parameter(help="section.key=a,b,c; repeatable: each by itself")] = None,
     quality: Quality = None,
     settings: Settings = None,
     out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _volume if not given")] = None,
@@ -75,16 +76,13 @@ def volume(
     compared packing by packing, on the same seeds: a change within its interval is not resolved.  volume.csv, .md and
     .png; what was stopped goes on when called again.
     """
-    from porescale.builders.scene import Scene as SceneType
-    from porescale.common.schema.sections import load
-    from porescale.common.studies.parameter_table import varied
+    from porescale.common.studies.parameter_table import ladders
 
     start = require_scene(scene, "porescale")
-    ladders = [varied([text]) for text in vary or USUAL]
-    name = load(start, SceneType, quality=quality, overrides=settings or ()).name
-    folder = output_folder(out, f"{name}_{NAME}")
+    asked = ladders(vary or USUAL)
+    folder = output_folder(out, f"{checked(start, asked, quality, settings or ())}_{NAME}")
     rows: list[Seen] = []
-    for ladder in ladders:
+    for ladder in asked:
         before: dict[str, Seen] = {}
         for point in ladder:
             given, place = [*(settings or ()), *point.settings], folder / point.name
@@ -103,6 +101,28 @@ def volume(
     write(folder, command, rows)
     print(f"{folder / NAME}.csv, .md, .png")
     return 0
+
+
+def checked(start: Path, ladders: Sequence[Sequence[Point]], quality: str | None, settings: Sequence[str]) -> str:
+    """Name of the scene; InputError with what is wrong with any of the points, before the first of them is made."""
+    from porescale.analysis.homogenise import specimen
+    from porescale.builders.scene import Scene as SceneType
+    from porescale.common.core.errors import Fault, InputError
+    from porescale.common.schema.sections import load
+
+    for text in settings:
+        key, _, value = text.partition("=")
+        if any(key == point.settings[-1].partition("=")[0] for ladder in ladders for point in ladder):
+            raise InputError(Fault(key, value, "is varied, too", repair="leave one out", file="--set"))
+    for point in (point for ladder in ladders for point in ladder):
+        try:
+            read = load(start, SceneType, quality=quality, overrides=(*settings, *point.settings))
+            specimen(read)
+        except InputError as error:
+            places = [f"{point.name}, {it.file}" if it.file else point.name for it in error.faults]
+            faults = [replace(it, file=place) for it, place in zip(error.faults, places, strict=True)]
+            raise InputError(faults) from None
+    return read.name
 
 
 def measured(point: Point, material: dict[str, Any], before: dict[str, Seen]) -> dict[str, Seen]:
@@ -141,8 +161,9 @@ def write(folder: Path, command: str, rows: Sequence[Seen]) -> None:
     shown = [[f"{cell:.4g}" if isinstance(cell, float) and math.isfinite(cell) else "–" if isinstance(cell, float) else
               cell for cell in line] for line in lines]  # fmt: skip
     text = (
-        f"# How large a specimen must be\n\nMade by `{command}`. Intervals are half of those at 95 % (Student's t); a "
-        "change is that from the row before of the same quantity, packing by packing.\n\n"
+        f"# How large a specimen must be\n\nMade by `{command}`. Intervals are half of those at 95 % (Student's t; "
+        "of K with the lattice and λ); a change is that from the row before of the same quantity, packing by "
+        "packing.\n\n"
         f"![specimens]({NAME}.png)\n\n" + "\n".join(markdown_table(header, shown)) + "\n"
     )
     write_study(folder, NAME, csv=csv_text(header, lines), md=text, png=picture(rows))

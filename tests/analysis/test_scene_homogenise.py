@@ -11,6 +11,7 @@ from porescale.analysis.homogenise import WAVES, pressure_of, ramp_of, section_o
 from porescale.builders.initial.placed import packed_count
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
+from porescale.scene.measures.homogenise import Homogenise
 from porescale.validation import homogenise as verify
 from porescale.validation.homogenise import VALIDATIONS
 from tests.reference.scenes import column, dry
@@ -90,6 +91,14 @@ def test_a_run_that_never_sheared_is_no_test():
     series = {name: values[:20] for name, values in verify.known_test().items()}
     with pytest.raises(InputError, match="holds no test"):
         numbers([series])
+
+
+def test_a_test_of_the_least_strain_is_one_though_it_ends_a_step_short():
+    (least,) = Homogenise.model_fields["strain"].metadata
+    (found,) = numbers([verify.known_test((1.0 - 1e-4) * least.ge)])
+    assert found["porosity"] == pytest.approx(0.19, rel=1e-12)
+    with pytest.raises(InputError, match="holds no test"):
+        numbers([verify.known_test(0.8 * least.ge)])
 
 
 def test_a_packing_whose_sides_stand_is_as_stiff_as_its_contacts_and_without_springs_across_it_is_not():

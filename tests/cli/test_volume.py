@@ -4,8 +4,12 @@ import math
 
 import pytest
 
-from porescale.cli.homogenise_volume import measured, write
-from porescale.common.studies.parameter_table import Point
+from porescale.cli.homogenise_volume import checked, measured, write
+from porescale.common.core.errors import InputError
+from porescale.common.studies.parameter_table import Point, ladders
+from tests.reference.folders import ROOT
+
+BED = ROOT / "cases" / "micro_to_macro" / "bed.toml"
 
 
 def file(values, seeds=(1, 2, 3, 4)):
@@ -42,3 +46,24 @@ def test_the_files_say_so(tmp_path):
     assert "| homogenise.grains | 600 | critical angle, degrees | 4 | 14 | 1 |" in (tmp_path / "volume.md").read_text()
     assert (tmp_path / "volume.png").read_bytes().startswith(b"\x89PNG")
     assert len((tmp_path / "volume.csv").read_text().splitlines()) == 3
+
+
+def test_two_keys_of_one_last_part_have_folders_of_their_own():
+    (first, _), (second,) = ladders(["homogenise.pressure=100,300", "contact.pressure=100"])
+    assert (first.name, second.name) == ("pressure=100", "pressure=100-2")
+    with pytest.raises(InputError, match="grains: is given twice"):
+        ladders(["homogenise.grains=150", "homogenise.grains=600"])
+
+
+@pytest.mark.parametrize(
+    ("settings", "wrong", "message"),
+    [
+        ((), "homogenise.grains=200,20", "grains=20, --set: homogenise.grains = 20: is out of range"),
+        ((), "contact.fricton=0.1", "fricton=0.1, --set: contact.fricton = 0.1: unknown key"),
+        (("contact.friction=0.3",), "contact.friction=0.1", "--set: contact.friction = '0.3': is varied, too"),
+    ],
+)
+def test_all_values_are_looked_at_before_the_first_is_measured(settings, wrong, message):
+    assert checked(BED, ladders(["homogenise.pressure=100"]), "draft", settings) == "bed"
+    with pytest.raises(InputError, match=message):
+        checked(BED, ladders(["homogenise.pressure=100", wrong]), "draft", settings)

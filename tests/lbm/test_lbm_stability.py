@@ -1,6 +1,7 @@
 """Flows of the stability map: what holds, what does not, and the command that makes the map."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ import pytest
 from porescale.benchmarks import stability_lbm as stability
 from porescale.cli.main import PACKAGE
 from porescale.common.cli.application import application, main
-from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE
+from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Axis, Stability, Tried
+from porescale.common.evidence.stability_files import stored
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sanity import sane
@@ -68,6 +70,30 @@ def test_the_quick_map_is_made_by_one_command(tmp_path, capsys):
     kept = json.loads((tmp_path / "map" / "stability.json").read_text())
     assert [(r["law"], r["verdict"]) for r in kept["rows"]] == [(r["law"], r["verdict"]) for r in rows]
     assert kept["quick"]
+
+
+def test_a_map_that_is_interrupted_keeps_the_flows_that_are_done(tmp_path, capsys):
+    def measure(law: str, x: float, y: float) -> Tried:
+        if law == "b" and not done:
+            raise KeyboardInterrupt
+        return Tried(True, 0.0, {})
+
+    def flows() -> Stability:
+        made, axis = Stability(), Axis("x", (1.0, 2.0), (1.0,))
+        for law in "ab":
+            made.flow(
+                f"toy.{law}", title="t", x=axis, y=axis, laws=lambda quick, law=law: [law], right=1.0, because="so"
+            )(measure)
+        return made
+
+    done: list[bool] = []
+    toy, out = application(replace(PACKAGE, stability=flows)), ["--out", str(tmp_path)]
+    assert main(toy, ["study", "stability", *out]) == 130
+    assert {row.flow for row in stored(tmp_path, flows(), False)} == {"toy.a"}
+    done.append(True)
+    assert main(toy, ["study", "stability", "toy.b", *out]) == 0
+    assert {row.flow for row in stored(tmp_path, flows(), False)} == {"toy.a", "toy.b"}
+    assert "Made by `porescale study stability`." in (tmp_path / "stability.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -155,6 +155,8 @@ def test_a_field_says_little_and_becomes_a_table_and_a_plot():
     axes = field.plot()
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (px)", "y (px)")
     assert axes.get_ylim()[0] > axes.get_ylim()[1]  # down
+    field.u[3, 3] += 9.0  # one of 49, which hardly sets the scale
+    assert field.plot().get_title() == f"longest arrows {np.hypot(field.u, field.v).max():.3g} px a frame"
     assert field._repr_png_().startswith(b"\x89PNG")
 
 

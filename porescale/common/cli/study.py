@@ -112,7 +112,7 @@ def _stability(package: Package) -> Callable[..., int]:
     ) -> int:
         """Map where each law stays stable and where it is right, over flows that go from mild to extreme.
 
-        A map that the folder holds keeps its other flows.
+        The files are written after each flow; a map that the folder holds keeps its others.
         """
         from porescale.common.evidence import stability_files as study
 
@@ -121,23 +121,29 @@ def _stability(package: Package) -> Callable[..., int]:
         if list_:
             print_list(({"name": flow.name, "title": flow.title} for flow in flows), "{name}: {title}", json)
             return 0
-        folder = output_folder(out)
+        folder, every = output_folder(out), list(package.stability())
+        if quick:
+            study.require_quick(folder)
+        study.stored(folder, every, quick)  # a file that cannot be kept is found before anything runs
         use_threads(threads)
         rows, start, done = [], time.perf_counter(), 0
         total = sum(flow.count(quick) for flow in flows)
         for flow in flows:
+            mine = []
             for law in flow.laws(quick):
                 for y in flow.y.chosen(quick):
-                    rows += flow.run(law, y, quick)
+                    mine += flow.run(law, y, quick)
                     done += 1
                 spent = time.perf_counter() - start
                 left = f"{done} of {total}, about {spent / done * (total - done):.0f} s left"
                 say(f"{flow.name}: {law} ({left})")
-        others = [flow for flow in package.stability() if flow not in flows]
-        kept = study.stored(folder, others, quick)
-        shown = [flow for flow in package.stability() if flow.name in {row.flow for row in kept + rows}]
-        words = _command_line(package, "stability", () if kept else names, *(["--quick"] if quick else []))
-        study.write(folder, words, shown, kept + rows, quick)
+            rows += mine
+            mapped = study.stored(folder, [it for it in every if it.name != flow.name], quick) + mine
+            there = {row.flow for row in mapped}
+            shown = [it for it in every if it.name in there]
+            named = names if there <= {it.name for it in flows} else ()
+            words = _command_line(package, "stability", named, *(["--quick"] if quick else []))
+            study.write(folder, words, shown, mapped, quick)
         if json:
             print_json(row.as_dict() for row in rows)
         else:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -24,11 +23,8 @@ Stored = Mapping[str, Any]
 
 
 def stored(folder: Path) -> dict[str, Stored]:
-    """Rows that ``folder`` keeps, by name; none where the file is not there."""
-    file = folder / f"{NAME}.json"
-    if not file.exists():
-        return {}
-    return {row["name"]: row for row in json.loads(file.read_text(encoding="utf-8"))["rows"]}
+    """Rows that ``folder`` keeps, by name; none where the file is not there, InputError where it is torn."""
+    return dict(files.stored_rows(folder / f"{NAME}.json", lambda row: (Row.of(row).name, row)))
 
 
 def write(folder: Path, about: Mapping[str, Any], rows: Sequence[Stored]) -> None:
@@ -118,7 +114,7 @@ def panel(axes: Axes, row: Row) -> None:
         if math.floor(high) - math.ceil(low) < 1:  # fewer than two powers of ten: an axis without a scale
             axes.set_ylim(10.0 ** math.floor(low), 10.0 ** math.ceil(high))
         axes.legend(fontsize=7.5, frameon=False, loc="best")
-    axes.set_xticks(row.levels, [f"{level:.3g}" for level in row.levels], fontsize=8)
+    axes.set_xticks(row.levels, [f"{level:g}" for level in row.levels], fontsize=8)
     axes.xaxis.set_minor_locator(NullLocator())
     axes.yaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="y", labelsize=8)

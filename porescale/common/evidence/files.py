@@ -7,15 +7,18 @@ import hashlib
 import io
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from porescale.common.core.atomic import write_bytes
+from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+T = TypeVar("T")
 
 
 def write_files(folder: Path, files: Mapping[str, str | bytes]) -> None:
@@ -27,6 +30,20 @@ def write_files(folder: Path, files: Mapping[str, str | bytes]) -> None:
 def write_study(folder: Path, name: str, **contents: str | bytes) -> None:
     """Write the files of a study into ``folder``: ``name`` with each kind of file as its ending, json, csv, md, png."""
     write_files(folder, {f"{name}.{kind}": content for kind, content in contents.items()})
+
+
+def stored_rows(file: Path, read: Callable[[dict[str, Any]], T]) -> list[T]:
+    """What ``read`` makes of each row that a study's JSON ``file`` keeps; [] where there is none.
+
+    Raises InputError where it is torn, or none of that study, whose rows would be lost.
+    """
+    if not file.exists():
+        return []
+    try:
+        return [read(row) for row in json.loads(file.read_text(encoding="utf-8"))["rows"]]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        repair = "remove it, or name another folder"
+        raise InputError(Fault("--out", str(file), "cannot be read as a file of this study", repair=repair)) from None
 
 
 def finite(value: Any) -> Any:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from porescale.common.api.report import shown
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
 from porescale.common.evidence import files
 from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Flow, Row, holds_up_to
@@ -38,20 +39,30 @@ def write(folder: Path, command: str, flows: Sequence[Flow], rows: Sequence[Row]
 
 
 def stored(folder: Path, flows: Iterable[Flow], quick: bool) -> list[Row]:
-    """Rows of a map that ``folder`` holds already, of those ``flows`` whose laws and values are still the same."""
-    file = folder / f"{NAME}.json"
-    if not file.is_file():
-        return []
-    rows = [
-        Row(**row | {"numbers": {name: math.nan if it is None else it for name, it in row["numbers"].items()}})
-        for row in json.loads(file.read_text())["rows"]
-    ]
+    """Rows of a map that ``folder`` holds already, of those ``flows`` whose laws and values are still the same.
+
+    Raises InputError where its file is torn.
+    """
+    rows = files.stored_rows(folder / f"{NAME}.json", _row)
     found: list[Row] = []
     for flow in flows:
         mine = [row for row in rows if row.flow == flow.name]
         wanted = {(law, x, y) for law in flow.laws(quick) for x in flow.x.chosen(quick) for y in flow.y.chosen(quick)}
         found += mine if {(row.law, row.x, row.y) for row in mine} == wanted else []
     return found
+
+
+def require_quick(folder: Path) -> None:
+    """InputError where ``folder`` holds a map of all laws and values, of which `--quick` would leave nothing."""
+    file = folder / f"{NAME}.json"
+    if files.stored_rows(file, _row) and not json.loads(file.read_text(encoding="utf-8")).get("quick"):
+        problem, repair = f"would replace the whole map in {folder}", "name another folder by --out"
+        raise InputError(Fault("--quick", None, problem, repair=repair))
+
+
+def _row(row: dict[str, Any]) -> Row:
+    """A row as JSON keeps it; its missing numbers are nan."""
+    return Row(**row | {"numbers": {name: math.nan if it is None else it for name, it in row["numbers"].items()}})
 
 
 def as_dict(flow: Flow, quick: bool) -> dict[str, Any]:

@@ -76,6 +76,18 @@ def varied(options: Sequence[str]) -> list[Point]:
 
     Commas inside brackets or quotes belong to the value: ``domain.left=[0,1],[0,2]``.
     """
+    return named(combinations(_lists(options), "--vary"))
+
+
+def ladders(options: Sequence[str]) -> list[list[Point]]:
+    """The points of each ``key=a,b,c`` option by itself, no two of any of them of one name; InputError as `varied`."""
+    points = [combinations([settings], "--vary") for settings in _lists(options)]
+    names = iter(named(itertools.chain(*points)))
+    return [list(itertools.islice(names, len(ladder))) for ladder in points]
+
+
+def _lists(options: Sequence[str]) -> list[list[str]]:
+    """The settings of each ``key=a,b,c`` option."""
     lists = []
     for option in options:
         key, equals, values = option.partition("=")
@@ -85,7 +97,7 @@ def varied(options: Sequence[str]) -> list[Point]:
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
         lists.append([f"{key.strip()}={part}" for part in parts])
     _once([settings[0] for settings in lists], "--vary")
-    return named(combinations(lists, "--vary"))
+    return lists
 
 
 def crossed(points: Sequence[Point], others: Sequence[Point]) -> list[Point]:

@@ -199,8 +199,9 @@ class OwnContact:
         return self.collision(mass, radius, REPORTED).restitution
 
     def ratio_of_damping(self, mass: float, radius: float = 0.0) -> float:
-        """Damping ratio of the linear law with the same restitution."""
-        return ratio_from_restitution(min(max(self.restitution(mass, radius), 1e-300), 1.0), "force")
+        """Damping ratio of the linear law with the same restitution; infinite where discs do not part."""
+        restitution = min(self.restitution(mass, radius), 1.0)
+        return ratio_from_restitution(restitution, "force") if restitution > 0.0 else math.inf
 
     def contact_report(self, mass: float, radius: float) -> tuple[float, str]:
         """Seconds that a contact lasts at a speed of 1 cm/s."""

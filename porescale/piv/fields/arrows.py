@@ -18,7 +18,7 @@ def draw_arrows(axes: Axes, field: Any, *, over_image: bool) -> float:
     x, y = np.meshgrid(field.x, field.y)
     fluid = ~field.solid[cut]
     speed = np.hypot(field.u, field.v)[cut][fluid]
-    fast = float(np.percentile(speed, 98)) if speed.size else 1.0
+    fast = float(np.percentile(speed, 98)) if speed.size else 1.0  # few wrong vectors shall not shrink all others
     step = abs(field.x[1] - field.x[0]) * thin if len(field.x) > 1 else 1.0
     for own, colour in ((field.valid, VALID if over_image else ON_WHITE), (field.replaced, REPLACED)):
         here = fluid & own[cut]
@@ -26,4 +26,4 @@ def draw_arrows(axes: Axes, field: Any, *, over_image: bool) -> float:
             x[cut][here], y[cut][here], field.u[cut][here], field.v[cut][here], color=colour, angles="xy",
             scale_units="xy", scale=max(fast, 1e-300) / (1.2 * step), width=0.0022,
         )  # fmt: skip
-    return fast
+    return float(speed.max()) if speed.size else 0.0

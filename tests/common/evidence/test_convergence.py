@@ -5,6 +5,7 @@ import math
 
 import pytest
 
+from porescale.common.core.errors import InputError
 from porescale.common.evidence import convergence_files
 from porescale.common.evidence.convergence import Ladders, Row, order_of
 
@@ -64,6 +65,13 @@ def test_files_keep_rows_and_show_what_fails(tmp_path):
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("text", ["", "[]", '{"rows": [{"name": "toy.falls"}]}'])
+def test_torn_files_are_refused_in_one_line(tmp_path, text):
+    (tmp_path / "convergence.json").write_text(text)
+    with pytest.raises(InputError, match="cannot be read as a file of this study; remove it"):
+        convergence_files.stored(tmp_path)
+
+
 def test_a_picture_shows_every_level(tmp_path):
     from porescale.common.evidence.files import new_figure
 
@@ -77,6 +85,16 @@ def test_a_picture_shows_every_level(tmp_path):
     axes = new_figure(3.0, 3.0).subplots()
     convergence_files.panel(axes, Row.of(row.as_dict() | {"errors": [0.1, None, 0.01]}))
     assert [[8.0, 0.1], [32.0, 0.01]] in [line.get_xydata().tolist() for line in axes.get_lines()]
+
+
+def test_levels_stand_at_the_axis_in_full():
+    from porescale.common.evidence.files import new_figure
+
+    made = Ladders()
+    made.ladder("toy.fine", title="t", along="steps", levels=(250, 1000, 4000), because="so")(lambda level: 1 / level)
+    axes = new_figure(3.0, 3.0).subplots()
+    convergence_files.panel(axes, made["toy.fine"].run())
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["250", "1000", "4000"]
 
 
 def test_a_picture_has_ink_for_each_row():

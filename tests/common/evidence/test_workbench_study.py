@@ -9,7 +9,7 @@ import pytest
 
 from porescale.common.core.errors import InputError
 from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Axis, Row, Stability, Tried, holds_up_to
-from porescale.common.evidence.stability_files import csv_text, markdown, stored, write
+from porescale.common.evidence.stability_files import csv_text, markdown, require_quick, stored, write
 
 X = Axis("strain", (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0), (1.0, 64.0))
 Y = Axis("heat", (0.1, 0.2), (0.1,))
@@ -118,3 +118,22 @@ def test_a_map_keeps_the_flows_that_are_as_they_were(tmp_path):
     assert csv_text(kept) == csv_text(rows)
     assert stored(tmp_path / "none", flows, False) == []
     assert stored(tmp_path, flows, True) == []  # the check that must fail: other values are another map
+
+
+def test_a_quick_map_does_not_replace_a_whole_one(tmp_path):
+    flows = register().chosen()
+    require_quick(tmp_path)
+    for quick in (True, False):
+        rows = [row for law in flows[0].laws(quick) for y in Y.chosen(quick) for row in flows[0].run(law, y, quick)]
+        write(tmp_path, "toy study stability", flows, rows, quick=quick)
+        if quick:
+            require_quick(tmp_path)
+    with pytest.raises(InputError, match="--quick: would replace the whole map"):
+        require_quick(tmp_path)
+
+
+@pytest.mark.parametrize("text", ["", '{"rows": [', "[]", '{"rows": [{"flow": "toy.pull"}]}'])
+def test_a_torn_map_is_refused_in_one_line(tmp_path, text):
+    (tmp_path / "stability.json").write_text(text)
+    with pytest.raises(InputError, match="cannot be read as a file of this study; remove it"):
+        stored(tmp_path, register().chosen(), False)

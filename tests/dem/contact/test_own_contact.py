@@ -1,5 +1,6 @@
 """A contact law of a user: equal to a built-in one where it says the same, refused where it is no law."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -131,6 +132,14 @@ def test_what_is_one_is_not(folder: Path) -> None:
     assert sticky.problem(MASS, RADIUS) == ""  # with a rule that lets contacts attract
     held = sticky.collision(MASS, RADIUS, 1e-3)
     assert held.restitution == pytest.approx(1.0, rel=1e-8)  # the work of adhesion is got back while the overlap lasts
+
+
+def test_discs_that_do_not_part_have_no_finite_damping_ratio(folder: Path) -> None:
+    sticky = contact_named(folder, "sticky", "overlap", stiffness=1e5, adhesion=0.5)
+    assert sticky.ratio_of_damping(MASS, RADIUS) == pytest.approx(0.0, abs=1e-8)
+    caught = replace(contact_named(folder, "linear", "overlap", stiffness=1e5, damping=1e4))  # creeps back for ever
+    assert caught.restitution(MASS, RADIUS) == 0.0
+    assert caught.ratio_of_damping(MASS, RADIUS) == math.inf
 
 
 def test_between_unlike_materials_stiffnesses_are_in_series(folder: Path) -> None:
