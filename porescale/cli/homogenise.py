@@ -15,7 +15,16 @@ from cyclopts import Parameter
 from porescale.cli.homogenise_rates import Rates, known_of, laws_of, sheared
 from porescale.cli.homogenise_rates import about as about_rates
 from porescale.common.api.folders import output_folder
-from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say, use_threads
+from porescale.common.cli.options import (
+    Quality,
+    Scene,
+    Settings,
+    ThreadsOfEach,
+    each_threads,
+    require_scene,
+    say,
+    use_threads,
+)
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, conclude, enlist, laid_over
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
@@ -67,6 +76,7 @@ def homogenise(
     `[soil] material = "material.toml"` of a continuum-sph scene reads; homogenise.csv and .png show what it stands on.
     What was stopped goes on when called again.
     """
+    each_run = each_threads(threads)
     start = require_scene(scene, "porescale")
     from porescale.analysis.homogenise import lambda_error, section_of, specimen
     from porescale.analysis.material import known
@@ -81,10 +91,10 @@ def homogenise(
     request = section_of(read)
     aim = None if until is None else _aim(until)
     folder = output_folder(out, f"{read.name}_soil")
-    campaign = Campaign("porescale", folder / SPECIMEN, folder / "specimens", threads=threads or 1, again=again)
+    campaign = Campaign("porescale", folder / SPECIMEN, folder / "specimens", threads=each_run, again=again)
     enlist(campaign, jobs, scheduler)
     specimen_file(folder, SPECIMEN, toml(test))
-    use_threads(threads)
+    use_threads(each_run)
     first, count = test["grains"]["packing"]["seed"], request.packings
     ends: list[Ended] = []
     while True:

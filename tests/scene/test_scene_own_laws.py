@@ -41,6 +41,26 @@ def test_a_scene_with_a_function_of_a_notebook_is_not_saved_and_nothing_is_writt
     assert ps.load(saved).fluid.body_force.name == "kolmogorov"
 
 
+WRONG = {
+    "@ps.contact_law(keys={'k k': 'N/m'})\ndef pull(overlap, closing, radius, mass, p):":
+        "laws.py, line 2: pull = 'k k': is no name for a key",
+    "@ps.contact_law(keys={'k': 'N/zork'})\ndef pull(overlap, closing, radius, mass, p):":
+        "laws.py, line 2: pull = 'N/zork': unit of the key 'k'",
+    "@ps.contact_law(keys={'k': 'N/m'})\ndef pull(a, b):": "laws.py, line 2: pull: takes (a, b) (allowed: (overlap, ",
+    "@ps.contact_law\ndef pull(overlap, closing, radius, mass, p):": "contact_law = 'pull': has no keys; write ",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_what_a_decorator_refuses_is_said_of_the_key_that_names_the_law(tmp_path: Path, text: str) -> None:
+    (tmp_path / "laws.py").write_text(f"import porescale as ps\n{text}\n    return 0.0\n")
+    (tmp_path / "scene.toml").write_text('[contact]\nlaw = "laws.py:pull"\n[domain]\nwidth = 1\nheight = 1\n')
+    with pytest.raises(ps.InputError) as caught:
+        ps.load(tmp_path)
+    said = next(fault for fault in caught.value.faults if fault.key == "contact.law")  # it was "contact.law.laws.py, …"
+    assert f"contact.law = 'laws.py:pull': {WRONG[text]}" in said.line()
+
+
 DRY: dict[str, Any] = {
     "time": {"end": 0.1},
     "output": {"snapshot_interval": 0.1, "series_interval": 0.1},

@@ -237,9 +237,10 @@ def pile_report(scene: Scene, out: Report) -> None:
 
 
 def bare_exit(scene: Scene) -> str:
-    """The side of the pile on which water comes out of ground with no water on it at the start, "" where there is none.
+    """The side of the pile on which no water stands on the ground at the start, "" where there is none.
 
-    It comes out where the head is lower: of the water on the ground beside the pile, else that of the ground's surface.
+    Of two that with the lower head, where water comes out: of the water on the ground beside the pile, else that of the
+    ground's surface.
     """
     assert scene.pile is not None
     spacing = scene.numerics.spacing
@@ -252,9 +253,10 @@ def bare_exit(scene: Scene) -> str:
         # The water of a reservoir spreads over all that lies open on its side.
         tops += [it.highest for it in scene.reservoir if side * (0.5 * (it.left + it.right) - at) > 0.0]
         heads.append(max([top, *tops]) if known is None else known)
-    lower = int(heads[1] < heads[0])
-    covered = heads[lower] > top + 0.5 * spacing
-    return "" if covered or given[lower] is not None or heads[0] == heads[1] else ("left", "right")[lower]
+    for side in (int(heads[1] < heads[0]), int(heads[1] >= heads[0])):
+        if heads[side] <= top + 0.5 * spacing and given[side] is None:
+            return ("left", "right")[side]
+    return ""
 
 
 def levels(scene: Scene, out: Report) -> None:

@@ -70,9 +70,12 @@ class Run(record.Run):
     @overload
     def __getitem__(self, k: slice) -> list[RunSnapshot]: ...
     def __getitem__(self, k: int | slice) -> RunSnapshot | list[RunSnapshot]:
-        if isinstance(k, slice):
-            return [self.snapshot(each) for each in range(len(self))[k]]
-        return self.snapshot(k)
+        if not isinstance(k, slice):
+            return self.snapshot(k)
+        for end in (k.start, k.stop, k.step):
+            if end is not None:
+                _require_number(end)
+        return [self.snapshot(each) for each in range(len(self))[k]]
 
     def __iter__(self) -> Iterator[RunSnapshot]:
         return self.snapshots()
@@ -86,8 +89,9 @@ class Run(record.Run):
     def snapshot(self, k: int, cells: Collection[str] | None = None) -> RunSnapshot:
         """Snapshot ``k`` (negative from the end); of its grids only the arrays in ``cells``, if given.
 
-        IndexError beyond the last, InputError when its file is damaged.
+        IndexError beyond the last, InputError for what is no whole number, and when its file is damaged.
         """
+        _require_number(k)
         if not -len(self) <= k < len(self):
             there = f"0 to {len(self) - 1}" if len(self) else "none"
             raise IndexError(f"snapshot {k} is not in this run: it has {len(self)} ({there})")
@@ -182,7 +186,7 @@ class Run(record.Run):
         from porescale.common.pictures.film import film_of
         from porescale.common.pictures.shown import Film
 
-        stem = self.folder / "film" if path is None else Path(path)
+        stem = self.folder / "film" if path is None else path_of("path", path, "name a file")
         stem = stem.with_suffix("") if stem.suffix in (".mp4", ".webm") else stem
         return Film(film_of(self, self._painter_of(words, ("rate",)), stem, rate))
 
@@ -197,7 +201,7 @@ class Run(record.Run):
         """
         from porescale.common.pictures.figure import figure_of, write_figure
 
-        wanted = wanted_of(words)
+        wanted, file = wanted_of(words), None if path is None else path_of("path", path, "name a file")
         if against is not None and not isinstance(against, Run):
             problem, repair = f"is no run ({type(against).__name__})", "give one of open_run"
             raise InputError(Fault("against", str(against), problem, repair=repair))
@@ -205,7 +209,7 @@ class Run(record.Run):
         for run in runs:
             run.require_own()
         looked = [(run, run.program.look(run)) for run in runs]
-        return figure_of(looked, wanted) if path is None else write_figure(looked, wanted, Path(path))
+        return figure_of(looked, wanted) if file is None else write_figure(looked, wanted, file)
 
     def measure(self, *given: Any, out: Path | str | None = None, **sections: Any) -> dict[str, Columns]:
         """What sections of a scene measure, at every snapshot of this run, as tables by name: {"probes": Columns, …}.
@@ -221,9 +225,10 @@ class Run(record.Run):
         from porescale.common.api.measure import measure, write_tables
 
         self.require_own()
+        folder = None if out is None else path_of("out", out, "name a folder")
         tables = measure(self, self.program, given, sections)
-        if out is not None:
-            write_tables(tables, Path(out))
+        if folder is not None:
+            write_tables(tables, folder)
         return tables
 
     def show(self) -> list[Path]:
@@ -352,6 +357,13 @@ def open_run(folder: Path | str, program: Program) -> Run:
 def _place(name: str) -> tuple[bool, str]:
     """Sorts names: those of MAIN first."""
     return name not in MAIN, name
+
+
+def _require_number(k: Any) -> None:
+    """InputError where ``k`` is not the whole number of a snapshot."""
+    if not hasattr(k, "__index__"):
+        repair = "give a whole number, from the end where negative"
+        raise InputError(Fault("snapshot", str(k), f"is no number of a snapshot ({type(k).__name__})", repair=repair))
 
 
 def _over_time(path: Path) -> bool:

@@ -7,6 +7,7 @@ recorded numbers are not installed.
 from __future__ import annotations
 
 import os
+import shlex
 import tomllib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -100,12 +101,15 @@ def scene_path(given: str | Path, program: str = "") -> Path:
     """``given`` where there is such a file or folder, else the scene of the case with this name.
 
     program : name of the command that is to run it.  InputError where the case is of another program or has no scene,
-    and where a name is near to that of a case; any other path is given back as it is.
+    where a folder holds a deck, and where a name is near to that of a case; any other path is given back as it is.
     """
     path = Path(given)
-    if _there(path):
+    case_here = _named(path)  # a case by its path is what it is by its name
+    if _there(path) and not case_here:
+        _refuse_deck(given, path)
         return path
-    found = find_case(path)
+    name = Path(case_here or path)
+    found = find_case(name)
     if found is None:
         near = "" if _there(path.with_name(f"{path.name}.toml")) else nearest_case(given)
         if near:
@@ -114,7 +118,7 @@ def scene_path(given: str | Path, program: str = "") -> Path:
         return path
     folder = cases_folder()
     assert folder is not None
-    case = _case(folder / path.parts[0])
+    case = _case(folder / name.parts[0])
     if case is not None and found == case.path and case.kind != "scene":
         others = f"; its scenes: {', '.join(case.scenes)}" if case.scenes else ""
         repair = f"run it with `{case.command}`{others}"
@@ -122,7 +126,28 @@ def scene_path(given: str | Path, program: str = "") -> Path:
     if case is not None and program not in ("", case.package) and case.kind == "scene":
         problem = f"is a case of {case.package}, not of {program}"
         raise InputError(Fault(str(given), problem=problem, repair=f"run it with `{case.command}`"))
+    _refuse_deck(given, found)
     return found
+
+
+def _named(path: Path) -> str:
+    """The name of the case whose folder, without scene.toml, lies at ``path``; "" where there is none."""
+    try:
+        its = path.is_dir() and not (path / SCENE).is_file() and path.resolve().parent == cases_folder()
+    except (OSError, ValueError):  # a folder that may not be looked into
+        return ""
+    return path.resolve().name if its else ""
+
+
+def _refuse_deck(given: str | Path, path: Path) -> None:
+    """InputError where the folder ``path``, which ``given`` leads to, holds a deck of DEMseg and no scene."""
+    try:
+        deck = (path / DECK).is_file() and not (path / SCENE).is_file()
+    except (OSError, ValueError):
+        return
+    if deck:
+        repair = f"run it with `porescale demseg run {shlex.quote(str(given))}`"
+        raise InputError(Fault(str(given), problem="is a deck of DEMseg, no scene", repair=repair))
 
 
 def nearest_case(given: str | Path) -> str:

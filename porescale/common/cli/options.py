@@ -8,6 +8,8 @@ from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from porescale.common.core.errors import Fault, InputError
+
 Scene = Annotated[Path, Parameter(help="TOML file, folder with scene.toml, or name of a case (see `cases`)")]
 Quality = Annotated[
     Literal["draft", "standard", "fine"] | None,
@@ -47,6 +49,14 @@ def use_threads(count: int | None) -> int:
     from porescale.common.compiled.jit import set_threads
 
     return set_threads(count)
+
+
+def each_threads(count: int | None) -> int:
+    """The number of threads of each run of many, 1 where none is given; InputError below 1.  Where they run, another
+    machine may be, has the last word on how many there are."""
+    if count is not None and count < 1:
+        raise InputError(Fault("--threads", count, "is out of range", "", ">= 1"))
+    return count or 1
 
 
 def require_scene(given: Path, program: str) -> Path:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from porescale.common.api.folders import output_folder
-from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, require_scene, say
+from porescale.common.cli.options import Quality, Scene, Settings, ThreadsOfEach, each_threads, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.studies.sweep import check_points, columns_at_end, expected, require_folder, run_points
@@ -71,6 +71,7 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.studies.parameter_table import ENSEMBLE, SWEEP, varied
         from porescale.common.studies.runner import Campaign
 
+        each_run = each_threads(threads)
         start = require_scene(scene, package.name)
         asked = Repeats(repeat, over)
         points = chosen_points(table, vary or (), asked)
@@ -80,7 +81,7 @@ def command(package: Package) -> Callable[..., int]:
             single, points = len(points), repeated(package, start, points, asked, quality, settings or ())
             check_points(package, start, points, quality, settings or (), "--over", len(points) // single)
         folder = output_folder(out, f"{name}_sweep")
-        campaign = Campaign(package.module, file, folder, tuple(settings or ()), quality, threads or 1, again)
+        campaign = Campaign(package.module, file, folder, tuple(settings or ()), quality, each_run, again)
         enlist(campaign, jobs, scheduler)
         require_folder(package, start, campaign, points)
         varying = [word for text in vary or () for word in ("--vary", text)]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from porescale.common.api.folders import output_folder
-from porescale.common.cli.options import Scene, Settings, ThreadsOfEach, require_scene, say, use_threads
+from porescale.common.cli.options import Scene, Settings, ThreadsOfEach, each_threads, require_scene, say, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.sweep import (
     Again,
@@ -60,6 +60,7 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.studies.trade import Errors, front
         from porescale.common.studies.trade_plan import read_plan
 
+        each_run = each_threads(threads)
         start = require_scene(scene, package.name)
         planned = read_plan(start, plan)
         features = package.features() if package.features else {}
@@ -82,7 +83,7 @@ def command(package: Package) -> Callable[..., int]:
         over_key = "--over" if asked else ""
         file, name = check_points(package, start, points, None, settings or (), over_key, len(groups[0]))
         folder = output_folder(out, f"{name}_trade")
-        campaign = Campaign(package.module, file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
+        campaign = Campaign(package.module, file, folder / "runs", tuple(settings or ()), None, each_run, again)
         enlist(campaign, jobs, scheduler)
         require_folder(package, start, campaign, points)
         ends = {ended.point.name: ended for ended in campaign.all(points, jobs, say)}
@@ -95,10 +96,10 @@ def command(package: Package) -> Callable[..., int]:
             [errors.trade(knob, label, point, [ends[one.name] for one in group])
              for (knob, label, point), group in zip(variants, groups, strict=True)]
         )  # fmt: skip
-        use_threads(threads)
+        use_threads(each_run)
         words = [package.name, "study", "trade", str(scene), *(["--plan", str(plan)] if plan else [])]
         words += Repeats(repeat, over).options()
-        about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
+        about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), each_run)
         about["settings"], about["over"] = list(settings or ()), key_of(groups[0][0])
         about["scene"] = scene_as_dict(load(start, package.scene(), overrides=settings or ()))
         about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in planned.quantity]

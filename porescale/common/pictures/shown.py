@@ -6,6 +6,7 @@ from pathlib import Path
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import path_of
 from porescale.common.core.html import data_url
 from porescale.common.core.types import AnyArray
 
@@ -22,7 +23,7 @@ class Picture:
 
     def save(self, path: Path | str) -> Path:
         """Write it as a PNG file, whole or not at all; returns the path.  InputError for a name of another format."""
-        path = Path(path)
+        path = path_of("path", path, "name a file")
         if path.suffix.lower() not in ("", ".png"):
             repair = f"name it {path.stem}.png; run.figure writes other formats"
             raise InputError(Fault("path", str(path), "is not that of a PNG file", repair=repair))

@@ -4,7 +4,7 @@ import functools
 import operator
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -79,7 +79,15 @@ def own_law(value: Any, kind: str, folder: Path | None) -> OwnLaw | None:
     try:
         return law_of(value, folder, kind)
     except InputError as error:
-        raise Refused(*error.faults) from None
+        raise Refused(*(_of_its_file(value, fault) for fault in error.faults)) from None
+
+
+def _of_its_file(reference: str, fault: Fault) -> Fault:
+    """A fault of the key that names a law, also where its file, or a decorator in it, says what is wrong there."""
+    if not fault.key:
+        return fault
+    given = "" if fault.value is None else f" = {fault.value!r}"
+    return replace(fault, key="", value=reference, problem=f"{fault.key}{given}: {fault.problem}")
 
 
 def own_laws(scene: Any, place: str = "") -> Iterator[tuple[str, OwnLaw]]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import pydantic
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.given_file import path_of
 from porescale.common.core.html import data_url
 from porescale.common.schema import scene_file
 from porescale.common.schema.describe import as_html, in_lines
@@ -111,7 +112,7 @@ class SceneBase(Section):
         """
         from porescale.common.schema.save import save
 
-        return save(self, self._written, self._source.folder, Path(path), overwrite)
+        return save(self, self._written, self._source.folder, path_of("path", path, "name a file"), overwrite)
 
     def picture(self) -> Picture:
         """The built initial state to scale, with everything in the scene labelled and a lens on its resolution.

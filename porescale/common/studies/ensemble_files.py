@@ -15,6 +15,8 @@ from porescale.common.studies.runner import Ended
 
 WORTH = ("mean", "standard deviation", "standard error", "t low", "t high", "bootstrap low", "bootstrap high")
 """What a sample is worth: columns of tables."""
+SAID = 40
+"""Numbers that are printed where none is judged, about a screen."""
 Number = Callable[[Ended, Mapping[str, Any]], float]
 
 
@@ -147,18 +149,20 @@ def short(value: float | None) -> str:
 
 
 def printed(lines: Sequence[Line]) -> list[str]:
-    """Lines for people: how many finished, and each number that is judged, or each number where none is."""
+    """Lines for people: how many finished, and each number that is judged; where none is the first `SAID` numbers."""
     found = list(dict.fromkeys(line.ensemble for line in lines))
     numbers = [line for line in lines if line.judged is not None]
     judged = [line for line in numbers if line.judged and line.judged.verdict]
     made = [f"{one.of.name}: {one.said()}" for one in found]
-    for line in judged or numbers:
+    for line in judged or numbers[:SAID]:
         assert line.judged
         name = f"{line.ensemble.of.name}, {title(line.row)}" if len(found) > 1 else title(line.row)
         verdict = f"{line.judged.verdict}: " if line.judged.verdict else ""
         expected = f", expected {band(line)}" if line.judged.verdict else ""
         more = f" ({line.cells['remark']})" if line.cells["remark"] else ""
         made.append(f"{verdict}{name} {with_bar(line.judged)}{expected}{more}")
+    if not judged and len(numbers) > SAID:
+        made.append(f"and {len(numbers) - SAID} numbers more, in {ENSEMBLE}.csv")
     return made
 
 

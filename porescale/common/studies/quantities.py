@@ -53,8 +53,13 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
         return float(getattr(np, at)(values))
     if isinstance(at, str):
         raise ValueError(f"at = {at!r} is not one of end, max, min, a time or a table")
-    over = 0.5 * (time[-1] - time[-2]) if len(time) > 1 else 0.0
-    return float(np.interp(at, time, values, right=values[-1] if at < time[-1] + over else np.nan))
+    return float(np.interp(at, time, values, right=np.nan if _beyond(time, at) else values[-1]))
+
+
+def _beyond(time: NDArray[Any], at: float) -> bool:
+    """Whether ``at`` (s) lies beyond the last of the rows at ``time`` (n,) s by half a row and more."""
+    times = np.unique(time)
+    return bool(at > times[-1] and at >= times[-1] + (0.5 * (times[-1] - times[-2]) if len(times) > 1 else 0.0))
 
 
 def _found(time: NDArray[Any], values: NDArray[Any], at: Mapping[str, Any]) -> float:
@@ -140,7 +145,8 @@ def _is_number(value: object) -> bool:
 
 
 def curve(columns: Columns, row: Mapping[str, Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Places and values (n,) of a curve at the time nearest to ``at``, or the last.
+    """Places and values (n,) of a curve at the time nearest to ``at``, or the last; nan beyond the run's end, as of
+    `measured`.
 
     Where the table has a row for each place, ``along`` names the column of places;  where it has a row for each time
     and a column for each place, ``column`` is their common name with a * in it, and places are counted.  Raises
@@ -149,12 +155,13 @@ def curve(columns: Columns, row: Mapping[str, Any]) -> tuple[NDArray[Any], NDArr
     time = columns[TIME]
     at = time.max() if row["at"] == "end" else float(row["at"])
     nearest = time == time[np.abs(time - at).argmin()]
+    known = np.nan if _beyond(time, at) else 1.0
     if row.get("along"):
         along, values = columns[row["along"]][nearest], columns[row["column"]][nearest]
         order = np.argsort(along, kind="stable")
-        return along[order], values[order]
+        return along[order], known * values[order]
     names = [name for name in columns if fnmatchcase(name, row["column"])]
     if not names:
         raise KeyError(row["column"])
-    values = np.array([columns[name][nearest][-1] for name in names])
+    values = known * np.array([columns[name][nearest][-1] for name in names])
     return np.arange(len(values), dtype=float), values

@@ -18,6 +18,8 @@ from porescale.common.studies.runner import FINISHED, Ended
 
 PANELS = 12
 """Columns that a picture shows."""
+ABREAST = 16
+"""Columns of a table of sweep.md, about a screen; more stand in tables below it."""
 ROUND_OFF = 1e-12
 """Share (of a mass, of a diameter) below which there is nothing but round-off, collected over millions of steps."""
 COSTS = {"steps": "step", "seconds (s)": "seconds", "core-seconds (s)": "core_seconds", "memory (B)": "peak_bytes"}
@@ -85,11 +87,15 @@ def csv_text(lines: Sequence[Mapping[str, Any]]) -> str:
 
 
 def markdown(command: str, lines: Sequence[Mapping[str, Any]], more: Sequence[str] = ()) -> str:
-    """The same as a table to read: four digits, empty columns left out;  more : lines that follow."""
+    """The same as tables to read, one where it is not too wide: four digits, empty columns left out;  more : lines that
+    follow."""
     shown = [name for name in lines[0] if any(each[name] not in ("", None) for each in lines)]
     parts = [f"# Sweep\n\nMade by `{command}`; the table with all digits is {SWEEP}.csv.\n\n![curves]({SWEEP}.png)\n"]
-    table = files.markdown_table(shown, [[_short(each[name]) for name in shown] for each in lines])
-    return "\n".join([*parts, *table, *more]) + "\n"
+    tables = []
+    for at in range(1, len(shown), ABREAST - 1):  # each with the names of the points, which come first
+        columns = [shown[0], *shown[at : at + ABREAST - 1]]
+        tables += ["", *files.markdown_table(columns, [[_short(each[name]) for name in columns] for each in lines])]
+    return "\n".join([*parts, *tables[1:], *more]) + "\n"
 
 
 def _short(value: Any) -> str:

@@ -112,6 +112,23 @@ def test_what_is_no_path_is_refused_where_a_path_is_meant(wrong):
             porescale.load("column_collapse", settings=wrong)
 
 
+def test_a_file_to_write_is_a_path_and_a_snapshot_has_a_number(tmp_path):
+    run = porescale.run(scene_of("dry"), tmp_path, progress=False)
+    for write in (scene_of("dry").save, run.picture().save, run.film, run.figure):
+        with pytest.raises(InputError, match=r"^path = '5': is no path \(int\); name a file$"):
+            write(5)
+    with pytest.raises(InputError, match=r"^out = '5': is no path \(int\); name a folder$"):
+        run.measure(probe={"x": 0.1, "y": 0.02}, out=5)
+    for wrong in ("0", 1.5, None):
+        for read in (run.__getitem__, run.snapshot, run.picture):
+            with pytest.raises(InputError, match=rf"^snapshot = '{wrong}': is no number of a snapshot"):
+                read(wrong)
+    with pytest.raises(InputError, match=r"^snapshot = 'a': is no number of a snapshot"):
+        run["a":]
+    assert run[np.int64(-1)].step == run[len(run) - 1].step
+    assert len(run[:-1:1]) == len(run) - 1
+
+
 @pytest.mark.parametrize("kind", ["dry", "tank"])
 @pytest.mark.parametrize("steps", [3.0, -3, "3", None])
 def test_steps_to_advance_are_a_whole_number_from_0_on(kind, steps):

@@ -1,6 +1,7 @@
 """Cases are found by name from any folder, in a checkout and where only the packages are installed."""
 
 import os
+import shlex
 import shutil
 from pathlib import Path
 
@@ -74,6 +75,33 @@ def test_a_case_that_cannot_be_run_so_says_what_can(elsewhere, name, program, sa
         shipped.scene_path(name, program)
     (fault,) = refused.value.faults
     assert said in fault.repair
+
+
+@pytest.mark.parametrize("name", ["demseg_disc", "rock", "micro_to_macro"])
+def test_a_case_by_its_path_says_what_can_run_it_as_by_its_name(elsewhere, name):
+    with pytest.raises(InputError, match="of a case, no scene") as refused:
+        shipped.scene_path(CASES / name)
+    assert refused.value.faults[0].repair == fault_by_name(name).repair
+
+
+def fault_by_name(name):
+    with pytest.raises(InputError) as refused:
+        shipped.scene_path(name)
+    return refused.value.faults[0]
+
+
+def test_the_only_scene_of_a_case_is_found_by_the_path_of_its_folder(elsewhere):
+    assert shipped.scene_path(CASES / "clump") == CASES / "clump" / "clump.toml"
+
+
+def test_any_deck_says_what_runs_it(elsewhere):
+    shutil.copytree(CASES / "demseg_disc", elsewhere / "my deck")
+    for given in ("my deck", "demseg_control/moved"):
+        with pytest.raises(InputError, match="is a deck of DEMseg, no scene") as refused:
+            shipped.scene_path(given)
+        assert f"porescale demseg run {shlex.quote(given)}" in refused.value.faults[0].repair
+    (elsewhere / "my deck" / "scene.toml").touch()
+    assert shipped.scene_path("my deck") == Path("my deck")
 
 
 def test_what_is_near_to_no_case_is_left_to_the_reader_of_files(elsewhere):

@@ -227,6 +227,16 @@ def test_runs_that_do_not_finish_are_counted_said_and_leave_the_row_open(scene):
     assert not ensemble_files.failed(lines)
 
 
+def test_numbers_that_nothing_judges_are_printed_to_a_screen_s_end(scene):
+    ends = swept(scene, repeats(scene, 3), Machine())
+    asked = [{"name": f"q{k}", "column": "left (m)", "at": 0.01 * k} for k in range(50)]
+    found = ensembles(repeats(scene, 3), ends)
+    said = ensemble_files.printed(sweep_files.ensemble_lines(found, asked, run_table))
+    assert said[-1] == "and 10 numbers more, in ensemble.csv"
+    assert len(said) == 1 + 40 + 1
+    assert "more" not in ensemble_files.printed(sweep_files.ensemble_lines(found, asked[:40], run_table))[-1]
+
+
 def test_two_runs_have_a_mean_and_no_interval_and_it_is_said(scene):
     swept(scene, repeats(scene, 2), Machine())
     (line,) = table(scene.parent / "out")

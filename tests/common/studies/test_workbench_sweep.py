@@ -252,6 +252,16 @@ def test_the_table_holds_what_was_set_what_it_cost_and_what_came_out(tmp_path):
     assert (tmp_path / "out" / "sweep.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_table_to_read_is_a_screen_wide_and_goes_on_below():
+    """40 columns stood side by side."""
+    names = [f"c{k} (m)" for k in range(40)]
+    text = sweep_files.markdown("toy", [{"name": point} | dict.fromkeys(names, 1.0) for point in "ab"])
+    heads = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| name")]
+    assert [len(head) for head in heads] == [16, 16, 11]
+    assert [name for head in heads for name in head[1:]] == names
+    assert text.count("| a |") == text.count("| b |") == len(heads)
+
+
 def test_a_picture_shows_the_columns_that_differ_and_says_how_many_it_leaves_out(tmp_path, monkeypatch):
     ends = [Ended(Point(name, ()), tmp_path / name, "finished", {}) for name in "ab"]
     names = [f"c{k} (m)" for k in range(14)]

@@ -357,6 +357,10 @@ def test_a_curve_is_read_from_long_and_from_wide_tables():
     assert curve(wide, {"column": "h at *", "at": "end"})[1].tolist() == [2, 4]
     with pytest.raises(KeyError):
         curve(wide, {"column": "g at *", "at": "end"})
+    for table, asked in ((long, {"column": "y", "along": "x (m)"}), (wide, {"column": "h at *"})):
+        # Beyond the end it was the last row; whole steps end a little off the prescribed time.
+        assert np.isfinite(curve(table, asked | {"at": 1.4})[1]).all()
+        assert np.isnan(curve(table, asked | {"at": 1.5})[1]).all()
 
 
 def test_a_column_that_no_run_has_is_said_with_those_that_there_are(tmp_path):

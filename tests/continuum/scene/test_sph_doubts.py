@@ -111,16 +111,24 @@ def test_an_exit_through_bare_ground_beside_a_pile_needs_five_rows():
     assert "the second where no water stands on the right; numerics.spacing = 0.04 mends it" in said(bare)[0]
     assert bare_exit(bare) == "right"
     assert bare_exit(piled(0.4, 0.6)) == "left"
-    for covered in (piled(0.7, 0.5), piled(0.4, 0.4)):
-        assert not bare_exit(covered)
+    assert not bare_exit(piled(0.7, 0.5))
     rising = {"left": 0.6, "right": 1.0, "bottom": 0.4, "level": 0.5}
     assert not bare_exit(piled(0.6, 0.4, reservoir=[rising]))
     full = {"tank": {"width": 1.0, "height": 0.4}, "depth": 0.0, "water": {"sound_speed": 60.0}}
     faces = [{"side": "lid", "end": 0.45, "head": 0.6}, {"side": "lid", "start": 0.5, "head": 0.4}]
     assert not bare_exit(piled(0.0, 0.0, face=faces, **full))
+    level = piled(0.4, 0.4, pile=bare.pile)  # bare on both sides, where nothing comes out
+    assert "the second where no water stands on the left; numerics.spacing = 0.04 mends it" in said(level)[0]
+    assert not said(piled(0.4, 0.4))
     assert not said(piled(0.6, 0.4))
     assert not said(piled(0.7, 0.5, pile={"x": 0.475, "tip": 0.2}))
-    for given, there in ((bare, False), (piled(0.6, 0.4), True), (piled(0.7, 0.5, pile=bare.pile), True)):
+    for given, there in (
+        (bare, False),
+        (level, False),
+        (piled(0.4, 0.4), True),
+        (piled(0.6, 0.4), True),
+        (piled(0.7, 0.5, pile=bare.pile), True),
+    ):
         assert np.isfinite(Simulation(given).series()["exit gradient ()"]) == there
 
 

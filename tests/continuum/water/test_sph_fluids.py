@@ -171,12 +171,30 @@ def test_a_disc_of_just_six_particles_that_touches_the_edges_is_taken():
 
 
 def test_the_step_that_capillary_waves_allow_is_reported_and_used():
-    thick = scene(surface_tension=1e6, density=1000.0)
+    wide = [{"x": 0.5, "y": 0.5, "radius": 0.35}]
+    thick = scene(surface_tension=1.2e4, density=1000.0, disc=wide)
     rows = {row.name: row.value for group in report(thick).groups.values() for row in group}
     assert rows["limited by"] == "capillarity"
     model = Simulation(thick)
     h = RATIO * 0.05
-    assert model.step_seconds == pytest.approx(0.25 * (1000.0 * h**3 / (2.0 * np.pi * 1e6)) ** 0.5)
+    assert model.step_seconds == pytest.approx(0.25 * (1000.0 * h**3 / (2.0 * np.pi * 1.2e4)) ** 0.5)
+
+
+@pytest.mark.parametrize(
+    ("given", "most", "raised"),
+    [
+        ({}, 0.09 * 1000.0 * 20.0**2, "water"),  # liquid, as stiff as the water
+        ({"sound_speed": 5.0}, 0.09 * 100.0 * 5.0**2, "inclusion"),
+        ({"law": "adiabatic", "density": 1.2, "pressure": 1e3}, 1.403e3, "inclusion.pressure"),
+    ],
+)
+def test_tension_that_presses_a_fluid_together_is_refused_before_the_first_step(given, most, raised):
+    """It was accepted, and unstable at step 0 or some thousand steps later."""
+    with pytest.raises(InputError, match=rf"σ/R of the smallest disc is .* times ρ c².*; lower it, or raise {raised}"):
+        report(scene(surface_tension=1.001 * most * 0.2, **given))
+    near, low = (report(scene(surface_tension=share * most * 0.2, **given)).warnings for share in (0.999, 0.05))
+    assert any("raise " + raised in text for text in near)
+    assert not any("σ/R" in text for text in low)
 
 
 def test_discs_that_overlap_are_refused_where_each_has_its_own_pressure():
