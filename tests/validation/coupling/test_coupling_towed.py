@@ -96,7 +96,7 @@ def test_without_the_correction_a_disc_sinks_too_fast():
 
 
 def test_cells_that_are_filled_between_two_discs_make_a_film_too_strong(monkeypatch):
-    """At a gap of 0.1 cells in a place where outlines meet across a corner; with cells kept open it is one of the row."""
+    """At a gap of 0.1 cells in a place where outlines meet across a corner."""
     way, exact = (films.ANGLES[2], 3 * films.SPREAD[0] % 1, 3 * films.SPREAD[1] % 1), films.BETWEEN_SMALL[0.02][2]
     assert films.closing(0.02, way, radius=films.SMALL) / exact == pytest.approx(1, abs=0.1)
     monkeypatch.setattr(step, "body_of", lambda grains: np.zeros(grains.discs.count, np.int64))  # all of one body
