@@ -23,7 +23,7 @@ from continuum_sph.builders.reports.soil_report import (
     report_softening,
     report_strain,
     report_watched,
-    warn_of_heavy_grains,
+    warn_of_grains,
     warn_of_rest,
     warn_of_steep_faces,
 )
@@ -173,7 +173,7 @@ def moving(scene: Scene, out: Report, law: Law, stiff: float) -> float:
     out.row("longest step for its sound", min(ground.limits(0.0, sound / ground.smoothing.length, float("inf"))), "s")
     report_stiffness(out, stiff, porosity * modulus, density)
     out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
-    warn_of_heavy_grains(out, section)
+    warn_of_grains(out, section, density)
     least, _ = section.permeabilities
     spread = least * modulus / (density * GRAVITY)
     out.row("consolidation coefficient", spread, "m2/s")

@@ -196,6 +196,17 @@ def test_nothing_is_asked_of_water_that_is_not_there():
     scene(depth=0.0, **asked)  # a check that must not refuse: water in pores is water
 
 
+def test_grains_that_float_under_water_are_warned_of():
+    """Ground of 300 kg/m³ at a porosity of 0.4 rose through the water above it, without a word."""
+
+    def said(density):
+        return [text for text in report(scene(soil={"density": density})).warnings if "do not sink" in text]
+
+    assert "makes grains of 500 kg/m³" in said(300.0)[0]
+    assert said(600.0)  # as heavy as water
+    assert not said(610.0)
+
+
 @pytest.mark.parametrize(
     "pores",
     [{}, {"saturated": False, "suction": {"alpha": 5.0, "n": 3.0, "water_table": 0.2}}, {"saturated": False}],
