@@ -103,8 +103,8 @@ def face_faults(
     found = []
     full = soil.body if soil is not None and soil.saturated else ()
     if faces and not full and (soil is None or soil.suction is None):  # with suction faces are refused themselves
-        found.append(Fault("face", "given", "needs ground whose pores are full",
-                           repair="add [soil] and soil.saturated = true"))  # fmt: skip
+        repair = "give soil.saturated = true" if soil else "add [soil] and soil.saturated = true"
+        found.append(Fault("face", "given", "needs ground whose pores are full", repair=repair))
     for k, it in enumerate(faces):
         key = f"face[{k}]"
         wrong = it.faults(key, size, spacing)

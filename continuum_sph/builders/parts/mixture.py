@@ -228,7 +228,8 @@ def assemble(scene: Scene) -> Assembly:
         spacing = scene.numerics.spacing
         pile = sheet_pile(scene.pile, spacing)
         given = partial(given_heads, scene.face, pile.x, scene.inner, spacing)
-        parts.append(ExitGradientPart(pile, both.water, scene.water.density * scene.gravity, given))
+        lid = scene.inner[1] if scene.tank.lid else np.inf
+        parts.append(ExitGradientPart(pile, both.water, scene.water.density * scene.gravity, given, lid))
     parts.append(PoreInstruments(scene, both.water))
     if scene.air:
         parts.append(AirPart(both.water))

@@ -15,7 +15,7 @@ to 0.2 spacings: the row under a free surface lacks partners.  So the head of op
 ground is fitted below its second row.
 
 With fewer than LEAST rows beside the sheet, LEAST_BARE of bare ground, there are fewer than two rows between the
-surface and the tip: no number then.
+surface and the tip, and where ground reaches a lid without a face no water comes out: no number then.
 """
 
 from collections.abc import Callable, Sequence
@@ -58,21 +58,28 @@ def ground_at(section: SoilSection, x: float) -> float:
 class ExitGradientPart(Part):
     """The exit gradient beside a ``pile`` in a ``flow`` of water whose weight is ρ g (N/m³) > 0.
 
-    given : heads (m) over the ground on its left and right at a time (s), None: as found.
+    given : heads (m) over the ground on its left and right at a time (s), None: as found;  lid : height of a closed
+    lid, m.
     """
 
     def __init__(
-        self, pile: Pile, flow: PoreFlow, weight: float, given: Callable[[float], tuple[float | None, float | None]]
+        self,
+        pile: Pile,
+        flow: PoreFlow,
+        weight: float,
+        given: Callable[[float], tuple[float | None, float | None]],
+        lid: float = np.inf,
     ) -> None:
-        self.pile, self.flow, self.weight, self.given = pile, flow, weight, given
+        self.pile, self.flow, self.weight, self.given, self.lid = pile, flow, weight, given, lid
 
     def row(self) -> dict[str, float]:
         """The column of the exit gradient i_E at the sheet pile.
 
         exit gradient () : hydraulic gradient upwards where water leaves the ground beside the pile; nan where fewer
-            than four rows of particles lie beside it, five where no water stands on the ground
+            than four rows of particles lie beside it, five where no water stands on the ground, and where the ground
+            reaches a lid without a face
         """
-        return {NAME: exit_gradient(self.pile, self.flow, self.weight, self.given(self.flow.time))}
+        return {NAME: exit_gradient(self.pile, self.flow, self.weight, self.given(self.flow.time), self.lid)}
 
 
 def steepness(z: NDArray[np.complex128], head: Floats, buried: float) -> float:
@@ -90,6 +97,11 @@ def resolved(buried: float, spacing: float, *, bare: bool = False) -> bool:
     return buried > ((LEAST_BARE if bare else LEAST) - 0.5) * spacing
 
 
+def closed(top: float, lid: float, spacing: float) -> bool:
+    """Whether ground up to ``top`` (m) ends at a closed lid at a height ``lid``, m."""
+    return top > lid - 0.5 * spacing
+
+
 def open_head(above: Floats, head: Floats) -> float | None:
     """Mean ``head`` (n,) m of open water ``above`` (n,) the blurred row over the ground, in spacings, without zig-zags;
     None where there is none within OPEN."""
@@ -99,13 +111,18 @@ def open_head(above: Floats, head: Floats) -> float | None:
 
 
 def beside(
-    pile: Pile, water: Floats, head: Floats, soil: Floats, given: tuple[float | None, float | None] = (None, None)
+    pile: Pile,
+    water: Floats,
+    head: Floats,
+    soil: Floats,
+    given: tuple[float | None, float | None] = (None, None),
+    lid: float = np.inf,
 ) -> float:
-    """i_E where water rises beside a ``pile``: the larger of its two sides; no number where the ground is gone, or the
-    sheet not deep enough in it.
+    """i_E where water rises beside a ``pile``: the larger of its two sides; no number where the ground is gone or
+    closed, or the sheet not deep enough in it.
 
     water (n, 2) m, head (n,) m: of the water's particles, p/(ρ g) + y;  soil (s, 2) m;  given: head (m) over the ground
-    on its left and right, None: as found.
+    on its left and right, None: as found;  lid : height of a closed lid, m.
     """
     spacing, found = pile.spacing, [float("nan")]
     for side, known in zip((-1.0, 1.0), given, strict=True):
@@ -123,7 +140,7 @@ def beside(
             level = open_head(-depth[beside_it] / spacing - BLURRED, head[beside_it])
         if level is None:  # bare ground
             level, blurred = top, BARE
-            if not resolved(buried, spacing, bare=True):
+            if closed(top, lid, spacing) or not resolved(buried, spacing, bare=True):
                 return float("nan")
         near = (away > 0.0) & (away < WIDE) & (depth > blurred * spacing) & (depth < NEAR_TIP * buried)
         steep = steepness(depth[near] + 1j * spacing * away[near], head[near] - level, buried)
@@ -131,12 +148,14 @@ def beside(
     return float(np.fmax.reduce(found))
 
 
-def exit_gradient(pile: Pile, flow: PoreFlow, weight: float, given: tuple[float | None, float | None]) -> float:
-    """i_E beside a ``pile`` in the ``flow`` of water whose weight is ρ g (N/m³) > 0;  given: as in `beside`."""
+def exit_gradient(
+    pile: Pile, flow: PoreFlow, weight: float, given: tuple[float | None, float | None], lid: float
+) -> float:
+    """i_E beside a ``pile`` in the ``flow`` of water whose weight is ρ g (N/m³) > 0;  given, lid: as in `beside`."""
     layer, n = flow.layer, flow.layer.fluid
     there = (layer.mass[:n] > 0.0) & (layer.material[:n] == 0)
     x = layer.x[:n][there]
-    return beside(pile, x, layer.pressure[:n][there] / weight + x[:, 1], flow.skeleton.x, given)
+    return beside(pile, x, layer.pressure[:n][there] / weight + x[:, 1], flow.skeleton.x, given, lid)
 
 
 def given_heads(

@@ -9,7 +9,7 @@ from continuum_sph.builders.parts.air import air_pores, air_report
 from continuum_sph.builders.parts.faces import FARTHEST
 from continuum_sph.builders.parts.material import material_of
 from continuum_sph.builders.parts.pore_water import buoyancy, pore_law, water_counts
-from continuum_sph.builders.parts.sheet_pile import LEAST, LEAST_BARE, OPEN, given_heads, ground_at, resolved
+from continuum_sph.builders.parts.sheet_pile import LEAST, LEAST_BARE, OPEN, closed, given_heads, ground_at, resolved
 from continuum_sph.builders.parts.soil import porous_section, soil_law, soil_particles, soil_section
 from continuum_sph.builders.parts.stiffness import NATURAL, STIFF, largest_modulus, sound_speed
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
@@ -23,7 +23,7 @@ from continuum_sph.builders.reports.soil_report import (
     report_softening,
     report_strain,
     report_watched,
-    warn_of_heavy_grains,
+    warn_of_grains,
     warn_of_rest,
     warn_of_steep_faces,
 )
@@ -173,7 +173,7 @@ def moving(scene: Scene, out: Report, law: Law, stiff: float) -> float:
     out.row("longest step for its sound", min(ground.limits(0.0, sound / ground.smoothing.length, float("inf"))), "s")
     report_stiffness(out, stiff, porosity * modulus, density)
     out.row("critical gradient", critical_gradient(scene), "", "(G_s - 1)(1 - n)")
-    warn_of_heavy_grains(out, section)
+    warn_of_grains(out, section, density)
     least, _ = section.permeabilities
     spread = least * modulus / (density * GRAVITY)
     out.row("consolidation coefficient", spread, "m2/s")
@@ -224,6 +224,12 @@ def pile_report(scene: Scene, out: Report) -> None:
             f"the pile is {buried / spacing:.2g} rows deep in the ground: exit gradient () will be nan, as it is fit "
             f"to what lies between the first row and the tip{', the second' + bare if side else ''}; "
             f"numerics.spacing = {buried / least:.2g} mends it"
+        )
+    shut = scene.tank.lid and closed(tip + buried, scene.inner[1], spacing)
+    if shut and None in given_heads(scene.face, at, scene.inner, spacing):
+        out.warn(
+            f"the ground beside the pile ends at a closed lid, and without a face on each side within {OPEN:g} "
+            "spacings: exit gradient () will be nan, as no water comes out at a lid"
         )
     if tip == 0.0:
         out.warn(

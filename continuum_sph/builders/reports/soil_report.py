@@ -81,7 +81,7 @@ def soil_report(scene: Scene, bound: float = math.inf, stages: float = 0.0) -> R
     report_run(out, scene, "soil with suction" if stages else "soil", count, steps, seconds)
     report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
-    warn_of_heavy_grains(out, section)
+    warn_of_grains(out, section)
     return out
 
 
@@ -246,14 +246,21 @@ def report_side_walls(out: Report, section: SoilSection, *, wet: bool) -> None:
         out.warn("[soil.side_walls] brake the soil alone: water slides along them without friction")
 
 
-def warn_of_heavy_grains(out: Report, section: SoilSection) -> None:
-    """A warning where density and porosity make grains heavier than minerals are: often it was given as theirs."""
+def warn_of_grains(out: Report, section: SoilSection, water: float = 0.0) -> None:
+    """A warning where density and porosity make grains heavier than minerals are: often it was given as theirs; or
+    lighter than the ``water`` about them, kg/m³."""
     grains = section.density / (1.0 - section.porosity)
     if grains > HEAVIEST:
         out.warn(
             f"soil.density = {section.density:.4g} kg/m³ is of grains per whole volume, which at a porosity of "
             f"{section.porosity:.3g} makes grains of {grains:.4g} kg/m³: "
             "(1 - n) times theirs is meant, or a lower soil.porosity"
+        )
+    elif grains <= water:
+        out.warn(
+            f"soil.density = {section.density:.4g} kg/m³ at a porosity of {section.porosity:.3g} makes grains of "
+            f"{grains:.4g} kg/m³, which do not sink in water: ground below it floats; give the dry density of the "
+            "ground, or a higher soil.porosity"
         )
 
 

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from continuum_sph.builders.parts.water import wall_layers, water_law, water_state
 from continuum_sph.builders.reports.time_report import (
     SECOND_FLUID,
@@ -10,6 +12,7 @@ from continuum_sph.builders.reports.time_report import (
     report_run,
     step_seconds,
 )
+from continuum_sph.builders.sanity_fluids import bounds
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.parameters import RULES, Law
@@ -18,7 +21,7 @@ from porescale.common.api.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
 
 MACH_WARNED, MACH_REFUSED = 0.1, 0.3
-GAS_WARNED, GAS_REFUSED = 0.3, 1.0
+GAS_WARNED = 0.3
 """The same of gas under surface tension."""
 SNAPSHOT = 60  # per particle of a snapshot on disk, about
 BYTES = 560  # per particle, walls included: 420 to 500 in plain columns, the small ones most, 560 with all choices
@@ -112,24 +115,30 @@ def _smallest(scene: Scene) -> float:
 
 
 def _judge_tension(scene: Scene, law: Law, out: Report) -> None:
-    """A warning where surface tension presses a fluid of a ``law`` together, InputError where that is unstable.
+    """A warning where surface tension may tear discs of a ``law``, InputError where they would start denser than
+    `bounds` allow.
 
-    σ/R over ρ c² is the square of its Mach number √(σ/ρR)/c.  Discs 8 spacings across: in liquids to 0.22 steady, at
-    0.45 and 0.7 torn within 0.2 s; in gas to 0.42 steady, at 0.67 with currents of 25 m/s, torn at 1.3.
+    σ/R over ρ c² is the square of its Mach number √(σ/ρR)/c.  What it does depends on resolution and viscosity, so that
+    nothing is refused by it: over ten √(ρ R³/σ), in water of 1 mPa s, gas 8 spacings across is torn at 0.7, 16 across
+    steady at 16; drops 8 and 16 across are torn at 0.06, in fluids of 100 Pa s 16 across steady at 0.45.
     """
     assert scene.inclusion is not None
-    tension, keys = scene.inclusion.surface_tension, ("water.sound_speed", "inclusion.sound_speed")
-    for fluid, name, key in zip(law.fluids, ("water", "second fluid"), keys, strict=False):
-        state = fluid.state
-        warned, refused = (GAS_WARNED, GAS_REFUSED) if state.gas else (MACH_WARNED, MACH_REFUSED)
-        mach = (tension / (_smallest(scene) * state.density)) ** 0.5 / state.sound_speed
-        raised = "inclusion.pressure" if state.gas else key
-        said = f"σ/R of the smallest disc is {mach**2:.2g} times ρ c² of the {name}, which it presses together"
-        if mach > refused:
-            repair, most = f"lower it, or raise {raised}", f"<= {tension * (refused / mach) ** 2:.4g}"
-            raise InputError(Fault("inclusion.surface_tension", tension, said, "N/m", most, repair))
-        if mach > warned * (1.0 + 1e-9):
-            out.warn(f"{said}; lower inclusion.surface_tension, or raise {raised}")
+    tension, radius = scene.inclusion.surface_tension, _smallest(scene)
+    first, second = (fluid.state for fluid in law.fluids)
+    keys = ("water.sound_speed", "inclusion.pressure" if second.gas else "inclusion.sound_speed")
+    _, (_, densest), _ = bounds(law.fluids)
+    most = radius * float(second.pressure(np.array(densest)))
+    if tension > most:
+        problem = f"makes the smallest disc denser than {densest:.4g} kg/m³, at which a run ends, before the first step"
+        repair = "lower it, or raise water.sound_speed"
+        raise InputError(Fault("inclusion.surface_tension", tension, problem, "N/m", f"<= {most:.4g}", repair))
+    for state, name, key in zip((first, second), ("water", "second fluid"), keys, strict=True):
+        mach = (tension / (radius * state.density)) ** 0.5 / state.sound_speed
+        if mach > (GAS_WARNED if state.gas else MACH_WARNED) * (1.0 + 1e-9):
+            out.warn(
+                f"σ/R of the smallest disc is {mach**2:.2g} times ρ c² of the {name}, which may tear discs of few "
+                f"particles and little viscosity; lower inclusion.surface_tension or numerics.spacing, or raise {key}"
+            )
 
 
 def _warn(scene: Scene, mach: float, out: Report) -> None:

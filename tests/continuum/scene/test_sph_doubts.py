@@ -101,6 +101,18 @@ def piled(left, right, **changes):
     return scene(**{"soil": {"held": True}, "water": water, "pile": {"x": 0.475, "tip": 0.15}} | changes)
 
 
+def test_ground_that_a_lid_closes_beside_a_pile_has_no_exit_gradient_and_check_says_so():
+    """It was 2.5 where nothing comes out: heads under the lid were taken over the height of the ground."""
+    full = {"tank": {"width": 1.0, "height": 0.4}, "depth": 0.0, "water": {"sound_speed": 60.0}}
+    sides = [{"side": "left", "head": 0.8}, {"side": "right", "head": 0.6}]
+    far = [{"side": "lid", "end": 0.25, "head": 0.6}, {"side": "lid", "start": 0.7, "head": 0.4}]
+    near = [{"side": "lid", "end": 0.45, "head": 0.6}, {"side": "lid", "start": 0.5, "head": 0.4}]
+    for faces, shut in ((sides, True), (far, True), (near, False)):  # the last one must fail
+        given = piled(0.0, 0.0, face=faces, **full)
+        assert np.isnan(Simulation(given).series()["exit gradient ()"]) == shut
+        assert any("ends at a closed lid" in text for text in report(given).warnings) == shut
+
+
 def test_an_exit_through_bare_ground_beside_a_pile_needs_five_rows():
     """Four under water: its second row, too, has no head to fit."""
 
@@ -182,6 +194,17 @@ def test_nothing_is_asked_of_water_that_is_not_there():
     said = refusals(lambda: scene(depth=0.0, soil={"saturated": False}, **asked))
     assert said == [f"probe = 'given': {wrong}", f"level = 'given': {wrong}"]
     scene(depth=0.0, **asked)  # a check that must not refuse: water in pores is water
+
+
+def test_grains_that_float_under_water_are_warned_of():
+    """Ground of 300 kg/m³ at a porosity of 0.4 rose through the water above it, without a word."""
+
+    def said(density):
+        return [text for text in report(scene(soil={"density": density})).warnings if "do not sink" in text]
+
+    assert "makes grains of 500 kg/m³" in said(300.0)[0]
+    assert said(600.0)  # as heavy as water
+    assert not said(610.0)
 
 
 @pytest.mark.parametrize(

@@ -356,7 +356,7 @@ def test_the_heads_over_the_ground_beside_a_pile_are_those_of_the_nearest_faces(
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"soil": {"saturated": False}}, "needs ground whose pores are full"),
+        ({"soil": {"saturated": False}}, "needs ground whose pores are full; give soil.saturated = true"),
         ({"face": [{"side": "lid", "head": 1.0}], "tank": {"width": WIDE, "height": HIGH, "lid": False}}, "open tank"),
         ({"face": [{"side": "lid", "head": 1.0, "end": 0.6}]}, "lies beyond the side"),
         ({"face": [{"side": "left", "head": 1.0, "start": 0.35}]}, "fewer than 2 rows"),
