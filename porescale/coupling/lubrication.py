@@ -120,6 +120,7 @@ class Lubrication:
 
     radius (n,) m: those between which gaps lie;  viscosity, spacing, cut, dt, shift: as ``FilmLaw`` has them.
     force (n, 2) N/m: of the films on each disc, mean over the last call of ``step``.
+    walls: those at which there are films, all of the grains' unless their owner sets others.
 
     Raises InputError when the contact step allows no film thinner than ``cut``.
     """
@@ -142,6 +143,7 @@ class Lubrication:
         less = float((discs.radius - radius).min()) if discs.count else 0.0
         grains.list_up_to(max(0.0, cut - 2 * less))
         self.force, self._sum = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
+        self.walls = grains.walls
         self._total, self._means = np.zeros((discs.count, 2)), list[Floats]()
 
     def thinnest(self, reduced_radius: Floats, mass: Floats) -> Floats:
@@ -162,7 +164,7 @@ class Lubrication:
             self._total[:] = force
             add_films(
                 d.position, d.velocity, self.radius, d.mass, pairs.start, pairs.partner, grains.box.period,
-                grains.walls, self._law, self._total,
+                self.walls, self._law, self._total,
             )  # fmt: skip
             np.add(self._sum, self._total, out=self._sum)
             grains.step(self.dt, self._total, torque)

@@ -226,6 +226,17 @@ def test_a_body_with_a_prescribed_motion_has_the_mean_load_of_a_fluid_step():
     np.testing.assert_allclose(loads(True), mean, rtol=1e-12, atol=1e-12 * np.abs(mean).max())
 
 
+@pytest.mark.parametrize(("kind", "acts"), [("wall", True), ("slip", False), ("velocity", False), ("pressure", False)])
+def test_films_are_at_sides_that_hold_the_fluid_alone(kind, acts):
+    made = lab.immersed((40, 30), [(35.8, 15.0)], 4.0, [2.0], [(0.02, 0.0)], sides=("wall", "wall"))
+    fluid = Fluid(40, 30, made.fluid.relaxation_time, sides=Sides(right=kind))
+    coupled = Coupled(
+        fluid, made.grains, made.scales, hydraulic_ratio=1.0, contact_steps=4, acceleration=(0.0, 0.0), lubrication=True
+    )
+    coupled.advance()
+    assert bool(coupled.lubrication.force.any()) is acts
+
+
 def test_films_slow_an_approach():
     speeds = []
     for on in (True, False):
