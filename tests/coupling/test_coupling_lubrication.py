@@ -14,7 +14,7 @@ from porescale.coupling.coverage.shared import MOST
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import Box
+from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.motion.control import Moved
 from porescale.lbm.boundary.sides import Sides
@@ -38,7 +38,7 @@ def films(grains, cut=1.0, dt=0.25, *, plain=False):
     add = law.add_films.py_func if plain else law.add_films
     add(
         d.position, d.velocity, d.radius, d.mass, pairs.start, pairs.partner, grains.box.period, grains.walls,
-        law.FilmLaw(MU, 1.0, cut, dt, SHIFT), force,
+        grains.plates, law.FilmLaw(MU, 1.0, cut, dt, SHIFT), force,
     )  # fmt: skip
     return force, lub
 
@@ -112,6 +112,24 @@ def test_films_of_an_oblique_pair_are_equal_opposite_and_along_the_line_of_centr
 def test_a_film_acts_below_the_cut_and_not_in_contact(gap, acts):
     force, _ = films(dry([(20.0, 20.0), (28.0 + gap, 20.0)], 4.0, [(0.01, 0.0), (0.0, 0.0)]))
     assert (force != 0).any() == acts
+
+
+@pytest.mark.parametrize("plain", [False, True])
+def test_no_film_acts_through_a_plate(plain):
+    # Two discs 0.5 apart; the line of centres crosses x = 24.25 at a height of 20.
+    def pushed(plate, *, open_it=False):
+        discs = make_discs([(20.0, 20.0), (28.5, 20.0)], [4.0, 4.0], 2.0, [(0.02, 0.0), (-0.01, 0.0)])
+        grains = Grains(discs, lab.LAW, Box((0.0, 0.0), (60.0, 40.0)), plates=[plate], skin=0.01)
+        if open_it:
+            grains.remove_plate(plate.name)
+        return films(grains, plain=plain)[0].any()
+
+    assert not pushed(Plate(24.25, 0.0, 40.0))
+    # The twins: it ends above or below them, stands beside them, or is gone.
+    assert pushed(Plate(24.25, 20.1, 40.0))
+    assert pushed(Plate(24.25, 0.0, 19.9))
+    assert pushed(Plate(30.0, 0.0, 40.0))
+    assert pushed(Plate(24.25, 0.0, 40.0), open_it=True)
 
 
 def test_gaps_up_to_the_cut_are_listed_only_when_films_ask_for_it():
