@@ -124,8 +124,8 @@ def derive(scene: Scene) -> Derived:
             )
         warnings += filter(None, [too_soft(scene, scales, sizes, (law, wall_law), frames)])
         warnings += [*too_soft_for_weight(scene, law), *hammering(scene, mean_mass, sizes[1], wall_law)]
-        warnings += stays_shut(scene, sizes[1])
         model_step = scales.step if scales else step
+    warnings += stays_shut(scene, sizes[1] if sizes and scene.grains else 0.0)
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and law and scene.grains:
         warnings += filter(

@@ -32,6 +32,7 @@ from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.cells import minimum_image
+from porescale.dem.forces.walls import HIGH, LOW, PRESENT, X
 from porescale.dem.grains import Grains
 
 CELLS = 3.0
@@ -77,13 +78,26 @@ def film(gap, radius, mass, measured, law):
     return FILM * law.viscosity * (whole * np.sqrt(whole) - borne * np.sqrt(borne))
 
 
+@inline
+def parted(x, y, dx, dy, plates):
+    """Whether a plate stands between (x, y) and the point (dx, dy) from there, m."""
+    for w in range(plates.shape[0]):
+        along = plates[w, X] - x
+        if plates[w, PRESENT] != 0.0 and along * (along - dx) < 0.0:
+            height = y + dy * along / dx
+            if plates[w, LOW] < height < plates[w, HIGH]:
+                return True
+    return False
+
+
 @kernel
-def add_films(position, velocity, radius, mass, start, partner, period, walls, law, force):
+def add_films(position, velocity, radius, mass, start, partner, period, walls, plates, law, force):
     """Add the forces of all films to force (n, 2) N/m.
 
     position, velocity (n, 2) m, m/s;  radius (n,) m: those between which the gap lies;  mass (n,) kg/m;
     start (n + 1,), partner: half list in CSR of all pairs with a gap below ``cut`` (m);  period (2,) m, 0: none;
-    walls (w, 4): a point and the normal into the domain;  law: ``FilmLaw``.  Not checked: that centres differ.
+    walls (w, 4): a point and the normal into the domain;  plates (p, 5), see ``Plate.row``: no film acts through them;
+    law: ``FilmLaw``.  Not checked: that centres differ.
     """
     period_x, period_y = period
     cut = law.cut
@@ -94,7 +108,8 @@ def add_films(position, velocity, radius, mass, start, partner, period, walls, l
             dy = minimum_image(position[j, 1] - position[i, 1], period_y)
             reach = radius[i] + radius[j]
             square = dx * dx + dy * dy
-            if reach * reach < square < (reach + cut) * (reach + cut):
+            near = reach * reach < square < (reach + cut) * (reach + cut)
+            if near and not parted(position[i, 0], position[i, 1], dx, dy, plates):
                 distance = np.sqrt(square)
                 nx, ny = dx / distance, dy / distance
                 closing = (velocity[i, 0] - velocity[j, 0]) * nx + (velocity[i, 1] - velocity[j, 1]) * ny
@@ -120,6 +135,7 @@ class Lubrication:
 
     radius (n,) m: those between which gaps lie;  viscosity, spacing, cut, dt, shift: as ``FilmLaw`` has them.
     force (n, 2) N/m: of the films on each disc, mean over the last call of ``step``.
+    walls: those at which there are films, all of the grains' unless their owner sets others.
 
     Raises InputError when the contact step allows no film thinner than ``cut``.
     """
@@ -142,6 +158,7 @@ class Lubrication:
         less = float((discs.radius - radius).min()) if discs.count else 0.0
         grains.list_up_to(max(0.0, cut - 2 * less))
         self.force, self._sum = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
+        self.walls = grains.walls
         self._total, self._means = np.zeros((discs.count, 2)), list[Floats]()
 
     def thinnest(self, reduced_radius: Floats, mass: Floats) -> Floats:
@@ -162,7 +179,7 @@ class Lubrication:
             self._total[:] = force
             add_films(
                 d.position, d.velocity, self.radius, d.mass, pairs.start, pairs.partner, grains.box.period,
-                grains.walls, self._law, self._total,
+                self.walls, grains.plates, self._law, self._total,
             )  # fmt: skip
             np.add(self._sum, self._total, out=self._sum)
             grains.step(self.dt, self._total, torque)

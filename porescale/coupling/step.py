@@ -30,6 +30,7 @@ from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import solid_operator as solid_operator_of
 from porescale.dem.bodies.rigid import body_of, clumps_of
 from porescale.dem.grains import Grains
+from porescale.lbm.boundary.sides import NAMES
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 
@@ -106,6 +107,9 @@ class Coupled:
                 spacing=scales.spacing, cut=film_gap * scales.spacing, dt=scales.step / contact_steps,
                 shift=self.saturated.radius_shift * scales.spacing**2,
             )  # fmt: skip
+            # Where fluid passes or slips the film is another one, and so is what the lattice lacks of it.
+            sides = [name for name in NAMES if fluid.sides.boundary(name).no_slip]
+            self.lubrication.walls = grains.walls[np.isin(grains.wall_names, sides)]
 
     def _join(self, covering: Floats) -> None:
         """Have a body force push clumps whose members overlap by their union: its cells are those of several members.

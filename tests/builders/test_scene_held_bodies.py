@@ -109,6 +109,26 @@ def torques(*given: Any, **more: Any) -> tuple[float, float]:
     return row["disc 0 torque (N m/m)"] / unit, row["ring torque (N m/m)"] / unit
 
 
+def test_the_load_of_a_disc_has_the_films():
+    """The control that moves a grain away from two held discs gives what loads.csv says that the fluid takes."""
+    between = {"x": 0.006, "y": 0.004, "diameter": 0.0016}
+    beside = [{**between, "x": x} for x in (0.00436, 0.00764)]
+    given = {"x": {"velocity": 1e-4}, "y": {"velocity": 0.0}, "rotation": {"velocity": 0.0}}
+    grains = {"density": 2500, "hydraulic_radius_ratio": 1, "grain": [between]}
+    model = build(
+        box(
+            grains=grains, disc=beside, control=[{"grain": 0, "record": True, **given}], lubrication={},
+            contact={"stiffness": 1e4, "restitution": 0.5}, loads={"discs": [0, 1], "grains": [0]},
+        )
+    )  # fmt: skip
+    model.advance(20)
+    tables = model.tables()
+    loads = [tables["loads"][f"{name} force x (N/m)"] for name in ("grain 0", "disc 0", "disc 1")]
+    # Contacts there are none; the film of a fifth of a cell is several times what the lattice bears.
+    assert loads[0] == pytest.approx(-tables["control"]["grain 0 control force x (N/m)"], rel=1e-9)
+    assert loads[0] == pytest.approx(-loads[1] - loads[2], rel=0.1)
+
+
 def shift(cells: int, shift: float = 0.28) -> float:
     """What a disc and a hole that are wider by ``shift`` (cells²) over their radii change of the torque."""
     one, other = cells + shift / cells, 2 * cells + shift / (2 * cells)

@@ -204,6 +204,21 @@ def test_a_box_that_is_filled_and_has_no_outlet_is_warned_of_and_refused():
         derive(water(**{**INLET, "time__end": 0.6}, domain__right="wall"))
 
 
+def test_what_is_filled_before_a_shut_gate_is_warned_of_and_refused():
+    # 0.01 m/s for 0.03 s into 6 mm, though beyond the gate there is an outlet; an inflow beyond it lets nothing out.
+    def gated(opens_at, **more):
+        return water(**{**INLET, **more}, gate={"x": 0.006, "opens_at": opens_at})
+
+    (line,) = warned(gated(0.03, domain__right="pressure"), "let 0.05 of the fluid in left of the gate while it is")
+    assert line.endswith('make one { kind = "pressure", pressure = 0 }')
+    sucked = {"domain__left": "pressure", "domain__right": {"kind": "velocity", "velocity": [0.1, 0.0]}}
+    with pytest.raises(InputError, match=r"^domain: the sides let 0\.5 of the fluid out right of the gate"):
+        derive(gated(0.03, **sucked))
+    # The twins: open from the start on, and with an outlet of its own.
+    assert not warned(gated(0.0, domain__right="pressure"), "let ")
+    assert not warned(gated(0.03, domain__right="pressure", domain__top="pressure"), "let ")
+
+
 @pytest.mark.parametrize("right", ["pressure", {"kind": "velocity", "velocity": [0.01, 0.0]}])
 def test_what_is_let_out_again_is_not_warned_of(right):
     assert not warned(water(**INLET, domain__right=right), "let ")

@@ -14,7 +14,7 @@ from porescale.coupling.coverage.shared import MOST
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import Box
+from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.motion.control import Moved
 from porescale.lbm.boundary.sides import Sides
@@ -38,7 +38,7 @@ def films(grains, cut=1.0, dt=0.25, *, plain=False):
     add = law.add_films.py_func if plain else law.add_films
     add(
         d.position, d.velocity, d.radius, d.mass, pairs.start, pairs.partner, grains.box.period, grains.walls,
-        law.FilmLaw(MU, 1.0, cut, dt, SHIFT), force,
+        grains.plates, law.FilmLaw(MU, 1.0, cut, dt, SHIFT), force,
     )  # fmt: skip
     return force, lub
 
@@ -112,6 +112,24 @@ def test_films_of_an_oblique_pair_are_equal_opposite_and_along_the_line_of_centr
 def test_a_film_acts_below_the_cut_and_not_in_contact(gap, acts):
     force, _ = films(dry([(20.0, 20.0), (28.0 + gap, 20.0)], 4.0, [(0.01, 0.0), (0.0, 0.0)]))
     assert (force != 0).any() == acts
+
+
+@pytest.mark.parametrize("plain", [False, True])
+def test_no_film_acts_through_a_plate(plain):
+    # Two discs 0.5 apart; the line of centres crosses x = 24.25 at a height of 20.
+    def pushed(plate, *, open_it=False):
+        discs = make_discs([(20.0, 20.0), (28.5, 20.0)], [4.0, 4.0], 2.0, [(0.02, 0.0), (-0.01, 0.0)])
+        grains = Grains(discs, lab.LAW, Box((0.0, 0.0), (60.0, 40.0)), plates=[plate], skin=0.01)
+        if open_it:
+            grains.remove_plate(plate.name)
+        return films(grains, plain=plain)[0].any()
+
+    assert not pushed(Plate(24.25, 0.0, 40.0))
+    # The twins: it ends above or below them, stands beside them, or is gone.
+    assert pushed(Plate(24.25, 20.1, 40.0))
+    assert pushed(Plate(24.25, 0.0, 19.9))
+    assert pushed(Plate(30.0, 0.0, 40.0))
+    assert pushed(Plate(24.25, 0.0, 40.0), open_it=True)
 
 
 def test_gaps_up_to_the_cut_are_listed_only_when_films_ask_for_it():
@@ -224,6 +242,17 @@ def test_a_body_with_a_prescribed_motion_has_the_mean_load_of_a_fluid_step():
     mean = loads(False)
     assert mean[0, 0] < -1e-6 < 1e-6 < mean[1, 0]
     np.testing.assert_allclose(loads(True), mean, rtol=1e-12, atol=1e-12 * np.abs(mean).max())
+
+
+@pytest.mark.parametrize(("kind", "acts"), [("wall", True), ("slip", False), ("velocity", False), ("pressure", False)])
+def test_films_are_at_sides_that_hold_the_fluid_alone(kind, acts):
+    made = lab.immersed((40, 30), [(35.8, 15.0)], 4.0, [2.0], [(0.02, 0.0)], sides=("wall", "wall"))
+    fluid = Fluid(40, 30, made.fluid.relaxation_time, sides=Sides(right=kind))
+    coupled = Coupled(
+        fluid, made.grains, made.scales, hydraulic_ratio=1.0, contact_steps=4, acceleration=(0.0, 0.0), lubrication=True
+    )
+    coupled.advance()
+    assert bool(coupled.lubrication.force.any()) is acts
 
 
 def test_films_slow_an_approach():

@@ -109,6 +109,10 @@ def test_a_film_or_a_rim_that_a_body_has_not_is_said():
     said = " ".join(derive(column(**WATER | grains | block)).warnings)
     assert "[lubrication] adds no film at [[rectangle]]" in said
     assert "adds no film at [gate]" in " ".join(derive(column(lubrication={})).warnings)
+    ring = {"ring": {"x": 0.006, "y": 0.004, "diameter": 0.0064}, "disc": [{"x": 0.006, "y": 0.004, "diameter": 0.002}]}
+    closed = {"domain__left": "wall", "domain__right": "wall", "domain__top": "slip", "fluid__body_force": None}
+    said = " ".join(derive(water(**closed, **ring, lubrication={})).warnings)
+    assert "adds no film at [ring] and domain.top (slip)" in said
     assert "is not used: rims of discs" in " ".join(derive(water(**block, fluid__rim="soft")).warnings)
     # The twins: without what asks for it nothing is said.
     assert "film" not in " ".join(derive(column(**WATER | {**grains, "lubrication": None} | block)).warnings)

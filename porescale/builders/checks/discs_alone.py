@@ -46,11 +46,13 @@ def left_out(scene: Scene) -> list[str]:
     sliding = [f"domain.{name}" for name, side in scene.domain.sides.items() if side.speed]
     if scene.contact and sliding:
         found.append(f"the speed of {', '.join(sliding)} is felt by the fluid alone: grains do not feel it move")
-    ended = [name for name, it in (("[[rectangle]]", scene.rectangle), ("[gate]", scene.gate)) if it]
-    if scene.lubrication and ended:
+    bodies = {"[[rectangle]]": scene.rectangle, "[gate]": scene.gate, "[ring]": scene.ring}
+    without = [name for name, it in bodies.items() if it]
+    without += [f"domain.{name} ({side.kind})" for name, side in scene.domain.sides.items() if side.boundary.mirrors]
+    if scene.lubrication and without:
         found.append(
-            f"[lubrication] adds no film at {' and '.join(ended)}: it was measured between discs and at walls without"
-            " an end; the lattice alone bears what is there, too little below three cells"
+            f"[lubrication] adds no film at {' and '.join(without)}: it was measured between discs and at straight"
+            " walls without an end; the lattice alone bears what is there, too little below three cells"
         )
     others = {"polygon": scene.polygon, "rectangle": scene.rectangle, "ring": scene.ring}
     beside = [f"[[{name}]]" if name != "ring" else "[ring]" for name, it in others.items() if it]

@@ -224,14 +224,7 @@ def _mean_density(scene: Scene, solids: list[Solid]) -> float:
 
 def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault], warnings: list[str]) -> None:
     """Refuse or warn of the four;  solids : whether any are in the fluid, whose drag has a limit of its own."""
-    filled = filled_by(scene)
-    if abs(filled) > FILLED_WARN:
-        what = f"the sides let {abs(filled):.2g} of the fluid {'in' if filled > 0 else 'out'} until time.end, and none"
-        way, repair = "out" if filled > 0 else "in", 'make one { kind = "pressure", pressure = 0 }'
-        if abs(filled) > DENSITY_REFUSE:
-            faults.append(Fault("domain", None, f"{what} lets it {way}", repair=repair))
-        else:
-            warnings.append(f"{what} lets it {way}: the density changes by as much; {repair}")
+    _check_filled(scene, faults, warnings)
     _check_gaps(scene, scales, faults, warnings)
     _check_shut(scene, warnings)
     _check_tilt(scene, scales, warnings)
@@ -242,6 +235,25 @@ def check_flows(scene: Scene, scales: Scales, solids: bool, faults: list[Fault],
             f"relaxation time {scales.relaxation_time:.3g}: above {LONGEST_ALONE:g} flows that change with time are"
             f" off; a step of {0.99 * step:.2g} s keeps it below"
         )
+
+
+def _check_filled(scene: Scene, faults: list[Fault], warnings: list[str]) -> None:
+    """Refuse or warn of fluid that sides let into a room without a way out, or out of it: the box, and what is on
+    either side of the gate while it is shut."""
+    end, width, shut = scene.time.end, scene.domain.width, "of the gate while it is shut"
+    rooms = {"until time.end": (0.0, width, end)}
+    if scene.gate is not None:
+        x, opens = scene.gate.x, min(scene.gate.opens_at, end)
+        rooms |= {f"left {shut}": (0.0, x, opens), f"right {shut}": (x, width, opens)}
+    for where, room in rooms.items():
+        filled = filled_by(scene, *room)
+        way, other = ("in", "out") if filled > 0 else ("out", "in")
+        what = f"the sides let {abs(filled):.2g} of the fluid {way} {where}, and none lets it {other}"
+        repair = 'make one { kind = "pressure", pressure = 0 }'
+        if abs(filled) > DENSITY_REFUSE:
+            faults.append(Fault("domain", None, what, repair=repair))
+        elif abs(filled) > FILLED_WARN:
+            warnings.append(f"{what}: the density changes by as much; {repair}")
 
 
 def _check_gaps(scene: Scene, scales: Scales, faults: list[Fault], warnings: list[str]) -> None:
@@ -366,19 +378,21 @@ def _check_unheld(scene: Scene, scales: Scales, warnings: list[str]) -> None:
         )
 
 
-def filled_by(scene: Scene) -> float:
-    """Share of the box's fluid that sides of given velocity let in until the end, out where negative; 0 where another
-    side balances it, where a velocity is a function of one's own, or where rectangles move."""
-    domain, inwards = scene.domain, 0.0
+def filled_by(scene: Scene, left: float, right: float, until: float) -> float:
+    """Share of the fluid between ``left`` and ``right`` (m) that sides of given velocity let in until then (s), out
+    where negative; 0 where another side balances it, where a velocity is a function of one's own, or where rectangles
+    move."""
+    domain, inwards, wide = scene.domain, 0.0, right - left
     if any(it.fastest for it in scene.rectangle):
         return 0.0
     for name, side in domain.sides.items():
-        if not side.open:
+        beyond = (name == "left" and left > 0.0) or (name == "right" and right < domain.width)
+        if beyond or not side.open:
             continue
         if not side.boundary.prescribes_velocity or side.velocity is None or isinstance(side.velocity, OwnLaw):
             return 0.0
         u, v = side.velocity
         inwards += {"left": u, "right": -u}.get(name, 0.0) * domain.height
-        inwards += {"bottom": v, "top": -v}.get(name, 0.0) * domain.width
-    share = inwards * scene.time.end / (domain.width * domain.height)
+        inwards += {"bottom": v, "top": -v}.get(name, 0.0) * wide
+    share = inwards * until / (wide * domain.height)
     return share if math.isfinite(share) else 0.0

@@ -93,16 +93,26 @@ def _loads(scene: Scene, diameter: float) -> Iterator[tuple[str, Pressed, float]
 
 
 def stays_shut(scene: Scene, diameter: float) -> list[str]:
-    """A warning of a gate that has not risen by a mean grain's ``diameter`` (m) when the run ends."""
+    """Warnings of rectangles that have not begun to move when the run ends, and of a gate that has not risen by a mean
+    grain's ``diameter`` (m; 0: there are none)."""
     gate, end = scene.gate, scene.time.end
+    still = [
+        f"rectangle[{k}].starts_at = {it.starts_at:g} s: the run ends before, at {end:g} s, and it stands still"
+        for k, it in enumerate(scene.rectangle)
+        if it.fastest and it.starts_at >= end
+    ]
     if gate is None:
-        return []
+        return still
     if gate.opens_at >= end:
-        return [f"gate.opens_at = {gate.opens_at:g} s: the run ends before, at {end:g} s, and the gate stays shut"]
+        return [
+            *still,
+            f"gate.opens_at = {gate.opens_at:g} s: the run ends before, at {end:g} s, and the gate stays shut",
+        ]
     rise = math.inf if gate.lift_speed is None else gate.lift_speed * (end - gate.opens_at)
     if rise >= diameter:
-        return []
+        return still
     return [
+        *still,
         f"gate.lift_speed = {gate.lift_speed:g} m/s: at the end of the run, at {end:g} s, it has risen by {rise:.2g} m,"
-        f" less than a grain of {diameter:.2g} m, and lets none pass"
+        f" less than a grain of {diameter:.2g} m, and lets none pass",
     ]

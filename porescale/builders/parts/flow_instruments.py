@@ -143,9 +143,9 @@ class Loading:
     def row(self) -> Row:
         """Force (N/m) and torque (N m/m) of the fluid on every chosen body, and coefficients by a reference.
 
-        The load of the last step, that of the fluid inside taken back, and what a body force, the pressure gradient
-        that it stands for, does on the area of the body; buoyancy by gravity is not in it (the lattice solves for the
-        reduced pressure).
+        The load of the last step, that of the fluid inside taken back, with the films of [lubrication], and what a body
+        force, the pressure gradient that it stands for, does on the area of the body; buoyancy by gravity is not in it
+        (the lattice solves for the reduced pressure).
 
         NAME force x (N/m) : of the fluid on the body, without buoyancy by gravity
         NAME force y (N/m) : of the fluid on the body, without buoyancy by gravity
@@ -159,11 +159,14 @@ class Loading:
         loads, coupled = self.loads, self.coupled
         grains = disc_count(coupled.grains) - self.held
         row: Row = {}
+        force = coupled.fluid_force + coupled.push
+        if coupled.lubrication:
+            force += coupled.lubrication.force
         bodies = [(f"disc {k}", grains + k) for k in loads.discs] + [(f"grain {k}", k) for k in loads.grains]
         length = math.hypot(*loads.direction)
         ex, ey = loads.direction[0] / length, loads.direction[1] / length
         for name, k in bodies:
-            fx, fy = (float(value) for value in coupled.fluid_force[k] + coupled.push[k])
+            fx, fy = (float(value) for value in force[k])
             row[f"{name} force x (N/m)"] = fx
             row[f"{name} force y (N/m)"] = fy
             row[f"{name} torque (N m/m)"] = float(coupled.fluid_torque[k])

@@ -8,7 +8,7 @@ import pytest
 from porescale.builders.build import build
 from porescale.common.core.errors import Unstable
 from porescale.dem.measures.survey import max_overlap
-from tests.reference.scenes import column, dry, warned
+from tests.reference.scenes import column, dry, warned, water
 
 STANDS = {"left": 0.008, "width": 0.004, "height": 0.006, "diameter": 0.0008, "packing_fraction": 0.8}
 """A bed behind a gate, 7 grains high."""
@@ -43,6 +43,17 @@ def test_a_gate_that_opens_after_the_run_or_lets_no_grain_pass_is_said_to_stay_s
     vanishes = {"gate": {"x": column().gate.x, "opens_at": 0.0}}  # at once
     assert not warned(column(**vanishes), "stays shut")
     assert not warned(column(**vanishes), "lets none pass")
+
+
+def test_a_rectangle_that_starts_after_the_run_is_said_to_stand_still():
+    late = {"lower": [0.007, 0.002], "upper": [0.008, 0.008], "velocity": [0.01, 0.0], "starts_at": 5.0}
+    (line,) = warned(water(rectangle=[late]), "stands still")
+    assert line == f"rectangle[0].starts_at = 5 s: the run ends before, at {water().time.end:g} s, and it stands still"
+    assert not warned(water(rectangle=[late | {"starts_at": 0.0}]), "stands still")
+    closed = {"domain__left": "wall", "domain__right": "wall", "fluid__body_force": None}
+    gate = {"x": 0.006, "opens_at": 5.0}
+    assert len(warned(water(**closed, gate=gate), "stays shut")) == 1  # of a gate without grains, too
+    assert not warned(water(rectangle=[late | {"velocity": [0.0, 0.0]}]), "stands still")
 
 
 def test_contacts_that_cannot_bear_the_packing_are_warned_of_with_how_stiff_they_should_be():
