@@ -211,6 +211,12 @@ def pile_report(scene: Scene, out: Report) -> None:
     buried = ground_at(soil_section(scene), at) - tip
     out.heading("sheet pile")
     out.row("stands at", at, "m", f"the middle of the column of particles that holds pile.x = {scene.pile.x:g} m")
+    for k, strip in enumerate(scene.reservoir):
+        if strip.left < at < strip.right:
+            out.warn(
+                f"reservoir[{k}] reaches across the pile: what it keeps is the mean of both sides, whatever each of "
+                f"them has; end it at {at - 0.5 * spacing:g} m, or begin it at {at + 0.5 * spacing:g} m"
+            )
     if buried <= 0.0:
         out.row("rows of ground beside it", 0.0)
         out.warn("the pile does not reach into the ground at the start: exit gradient () will be nan; lower pile.tip")

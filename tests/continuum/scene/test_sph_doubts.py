@@ -113,6 +113,14 @@ def test_ground_that_a_lid_closes_beside_a_pile_has_no_exit_gradient_and_check_s
         assert any("ends at a closed lid" in text for text in report(given).warnings) == shut
 
 
+def test_a_reservoir_across_a_pile_is_said_to_keep_the_mean_of_both_sides():
+    for left, across in ((0.2, True), (0.5, False)):  # the last one must fail
+        strip = {"left": left, "right": 1.0, "bottom": 0.4, "level": 0.6}
+        said = " ".join(report(piled(0.6, 0.6, reservoir=[strip])).warnings)
+        assert ("reservoir[0] reaches across the pile" in said) == across
+        assert ("end it at 0.45 m, or begin it at 0.5 m" in said) == across
+
+
 def test_an_exit_through_bare_ground_beside_a_pile_needs_five_rows():
     """Four under water: its second row, too, has no head to fit."""
 
