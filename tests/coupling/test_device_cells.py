@@ -145,6 +145,18 @@ def test_cells_that_two_bodies_share_stay_open(dtype, sides):
     assert not same(found[0], found[2])
 
 
+@pytest.mark.parametrize("body", [None, np.arange(3)], ids=["filled", "open"])
+def test_a_body_as_wide_as_a_periodic_box_meets_itself(body):
+    """Its patch is wider than the box, so that it has a cell at its side twice."""
+    found = []
+    for device in (False, True):
+        fluid, cells = started(device=device, sides=PERIODIC, size=(7, 7))
+        cells.body = body
+        found.append(gone(fluid, cells))
+    assert same(*found)
+    assert cells._patches.height[0] > 7
+
+
 @pytest.mark.parametrize(
     "place",
     [(0.4, 5.7), (25.0, 3.0), (-9.0, -9.0), (np.nan, 3.0)],

@@ -14,6 +14,7 @@ from porescale.coupling.coverage.overlap import subtract_in_row
 from porescale.coupling.coverage.rows import BLOCK
 from porescale.coupling.coverage.shared import MOST, opened
 from porescale.coupling.coverage.soft_rim import filter_cell, filter_row
+from porescale.coupling.device.layout import first_place, next_place
 from porescale.coupling.device.tiles import TILE_HEIGHT, TILE_WIDTH
 from porescale.coupling.push import covered_area_of, held_area_of
 
@@ -131,28 +132,13 @@ def keep_open(covered: Any, box: Any, tiles: Any, body: Any, patches: Any) -> No
         for turn in range(2 if x < box.nx and y < box.ny else 0):  # add up, share out
             for entry in range(tiles.start[t], tiles.start[t + 1]):
                 n = tiles.body[entry]
-                stride, height, low = patches.stride[n], patches.height[n], patches.corner[n, 1]
-                if box.periodic_y:
-                    low %= box.ny
-                while True:  # once, or again for what lies beyond a periodic side
-                    j = y - low
-                    base = patches.corner[n, 0]
-                    if box.periodic_x:
-                        base %= box.nx
-                    while 0 <= j < height and base + stride > 0:
-                        i = x - base
-                        if 0 <= i < stride:
-                            at = patches.start[n] + j * stride + i
-                            e = patches.fraction[at]
-                            if turn == 0 and e > 0:
-                                s += e
-                                several = several or -1 != owner != body[n]
-                                owner = body[n]
-                            elif turn == 1 and several and s > e > 0:
-                                patches.fraction[at] = opened(e, s, most)
-                        if not box.periodic_x:
-                            break
-                        base -= box.nx
-                    low -= box.ny
-                    if not box.periodic_y or low + height <= 0:
-                        break
+                at = first_place(n, x, y, box, patches)
+                while at >= 0:  # once, or again for what lies beyond a periodic side
+                    e = patches.fraction[at]
+                    if turn == 0 and e > 0:
+                        s += e
+                        several = several or -1 != owner != body[n]
+                        owner = body[n]
+                    elif turn == 1 and several and s > e > 0:
+                        patches.fraction[at] = opened(e, s, most)
+                    at = next_place(at, n, box, patches)

@@ -2,6 +2,8 @@
 
 from typing import Any, NamedTuple
 
+from porescale.common.compiled.jit import inline
+
 
 class Box(NamedTuple):
     """Cells along x and y, and whether those axes are periodic."""
@@ -45,3 +47,31 @@ class Tiles(NamedTuple):
     body: Any
     extent: Any
     gained: Any
+
+
+@inline
+def first_place(n, x, y, box, patches):
+    """Where in ``fraction`` the part of body ``n`` of the cell (x, y) stands, -1 where its patch does not reach."""
+    i, j = x - patches.corner[n, 0], y - patches.corner[n, 1]
+    if box.periodic_x:
+        i %= box.nx
+    if box.periodic_y:
+        j %= box.ny
+    if 0 <= i < patches.stride[n] and 0 <= j < patches.height[n]:
+        return patches.start[n] + j * patches.stride[n] + i
+    return -1
+
+
+@inline
+def next_place(at, n, box, patches):
+    """Where its next part of that cell stands, which lies beyond a periodic side; -1 where there is none."""
+    if not (box.periodic_x or box.periodic_y):
+        return -1
+    stride = patches.stride[n]
+    j = (at - patches.start[n]) // stride
+    i = at - patches.start[n] - j * stride
+    if box.periodic_x and i + box.nx < stride:
+        return at + box.nx
+    if box.periodic_y and j + box.ny < patches.height[n]:
+        return at + box.ny * stride - (i - i % box.nx if box.periodic_x else 0)
+    return -1

@@ -16,6 +16,7 @@ from porescale.coupling.coverage.rows import (
     motion_of_row,
     solid_velocity,
 )
+from porescale.coupling.device.layout import first_place, next_place
 from porescale.coupling.device.tiles import TILE_HEIGHT, TILE_WIDTH
 from porescale.coupling.psm_kernels import collide_saturated_cell, stretches, weights_of_cell
 from porescale.coupling.solid.law import is_soft
@@ -101,31 +102,16 @@ def bodies_of_cell(x, y, t, box, tiles, patches, soft):
     s, theta, sx, sy = real(0), real(0), real(0), real(0)
     for k in range(tiles.start[t], tiles.start[t + 1]):
         n = tiles.body[k]
-        stride, height, low = patches.stride[n], patches.height[n], patches.corner[n, 1]
-        if box.periodic_y:
-            low %= box.ny
-        while True:  # once, or again for what lies beyond a periodic side
-            j = y - low
-            base = patches.corner[n, 0]
-            if box.periodic_x:
-                base %= box.nx
-            while 0 <= j < height and base + stride > 0:
-                i = x - base
-                if 0 <= i < stride:
-                    at = patches.start[n] + j * stride + i
-                    e = patches.fraction[at]
-                    vx, vy = solid_velocity(e, real(at % BLOCK), block_at(at // BLOCK, patches))
-                    s += e
-                    sx += e * vx
-                    sy += e * vy
-                    if soft:
-                        theta += e * real(patches.theta[n])
-                if not box.periodic_x:
-                    break
-                base -= box.nx
-            low -= box.ny
-            if not box.periodic_y or low + height <= 0:
-                break
+        at = first_place(n, x, y, box, patches)
+        while at >= 0:  # once, or again for what lies beyond a periodic side
+            e = patches.fraction[at]
+            vx, vy = solid_velocity(e, real(at % BLOCK), block_at(at // BLOCK, patches))
+            s += e
+            sx += e * vx
+            sy += e * vy
+            if soft:
+                theta += e * real(patches.theta[n])
+            at = next_place(at, n, box, patches)
     return s, theta, sx, sy
 
 
