@@ -344,3 +344,15 @@ def test_bare_outlines_are_as_given():
     cells.cover(PLACES, still, still[:, 0], bare=True)
     area = cells.solid.sum()
     assert area == pytest.approx(np.pi * np.sum(np.square(RADIUS)), rel=1e-12)
+
+
+def test_a_disc_and_its_image_share_cells_with_clumps_beside_them_or_without():
+    found = []
+    for body in (None, [0, 1, 2], [0, 1, 1]):
+        cells = SaturatedCells(Fluid(7, 24, 0.8, sides=Sides(*["periodic"] * 4)), [3.5, 2.0, 2.0])
+        cells.body = None if body is None else np.array(body)
+        places = np.array([[3.7, 4.1], [3.0, 14.0], [4.5, 15.5]])
+        cells.cover(places, np.zeros((3, 2)), np.zeros(3))
+        found.append(cells._patches.fraction[: cells._patches.start[1]].copy())
+    assert np.array_equal(found[1], found[2])
+    assert not np.array_equal(found[0], found[1])

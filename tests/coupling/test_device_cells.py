@@ -157,6 +157,20 @@ def test_a_body_as_wide_as_a_periodic_box_meets_itself(body):
     assert cells._patches.height[0] > 7
 
 
+def test_a_disc_that_meets_its_image_alone_is_the_cpus():
+    found = []
+    for kind, cells_of in ((Fluid, SaturatedCells), (DeviceFluid, DeviceSaturatedCells)):
+        for body in (np.arange(1), None):
+            fluid = kind(7, 7, 0.7, force=FORCE, sides=PERIODIC)
+            cells = cells_of(fluid, [3.5])
+            cells.body = body
+            cells.advance(fluid, np.array([[3.7, 3.6]]), VELOCITY[:1], SPIN[:1])
+            found.append([cells._load.copy(), fluid.state()["populations"].copy()])
+    assert same(found[0], found[2])
+    assert same(found[1], found[3])
+    assert not same(found[0], found[1])
+
+
 @pytest.mark.parametrize(
     "place",
     [(0.4, 5.7), (25.0, 3.0), (-9.0, -9.0), (np.nan, 3.0)],

@@ -22,17 +22,20 @@ def opened(e, s, most):
 
 @inline
 def of_several(cell, band, own, bands, patches, body, joined):
-    """Whether a disc of another body than disc ``own`` has a part of a ``cell``, (column, row of the band);  joined:
-    columns of the box where those of one side come after those of the other, else 0."""
+    """Whether a disc of another body than disc ``own`` has a part of a ``cell``, (column, row of the band), or disc
+    ``own`` two, across a periodic side;  joined: columns of a box that is periodic along x, else 0."""
     x, y = cell
+    parts = 0
     for k in range(bands.start[band], bands.start[band + 1]):
         n = bands.body[k]
-        if n < body.shape[0] and body[n] != body[own]:
+        if n == own or (n < body.shape[0] and body[n] != body[own]):
             j = band * bands.height + y - bands.low[k]
             i = (x - patches.corner[n, 0]) % joined if joined else x - patches.corner[n, 0]
             while 0 <= j < patches.height[n] and 0 <= i < patches.stride[n]:
                 if patches.fraction[patches.start[n] + j * patches.stride[n] + i] > 0:
-                    return True
+                    parts += 1
+                    if n != own or parts > 1:
+                        return True
                 if not joined:
                     break
                 i += joined
@@ -88,7 +91,8 @@ def open_band(band, bands, patches, body, clumps, periodic_x, s):
 
 @parallel_kernel
 def keep_open(bands, patches, body, periodic_x, scratch):
-    """Leave 1 - ``MOST`` open of cells that discs of two bodies share, each keeping its part of what is solid.
+    """Leave 1 - ``MOST`` open of cells that discs of two bodies share, or a disc and its image across a periodic side,
+    each keeping its part of what is solid.
 
     body (n,): of the first n patches, which are discs, the first disc of the rigid body that each is of.  Overwrites
     ``patches.fraction``, which is filled, and ``bands`` lists;  scratch (threads, 3 or 4, height times (BLOCK + nx +

@@ -128,7 +128,7 @@ def keep_open(covered: Any, box: Any, tiles: Any, body: Any, patches: Any) -> No
         wide = (box.nx + TILE_WIDTH - 1) // TILE_WIDTH
         x, y = t % wide * TILE_WIDTH + c % TILE_WIDTH, t // wide * TILE_HEIGHT + c // TILE_WIDTH
         real = patches.fraction.dtype.type
-        s, most, owner, several = real(0), real(MOST), -1, False
+        s, most, last, several = real(0), real(MOST), -1, False
         for turn in range(2 if x < box.nx and y < box.ny else 0):  # add up, share out
             for entry in range(tiles.start[t], tiles.start[t + 1]):
                 n = tiles.body[entry]
@@ -137,8 +137,8 @@ def keep_open(covered: Any, box: Any, tiles: Any, body: Any, patches: Any) -> No
                     e = patches.fraction[at]
                     if turn == 0 and e > 0:
                         s += e
-                        several = several or -1 != owner != body[n]
-                        owner = body[n]
+                        several = several or (last >= 0 and (n == last or body[n] != body[last]))
+                        last = n
                     elif turn == 1 and several and s > e > 0:
                         patches.fraction[at] = opened(e, s, most)
                     at = next_place(at, n, box, patches)
