@@ -11,6 +11,8 @@ from porescale.common.evidence.register import discovered
 from tests.architecture.sources import ROOT
 
 PAGES = sorted((ROOT / "docs" / "theory").glob("*.md"))
+COMPARISONS = sorted((ROOT / "docs" / "theory" / "comparisons").glob("*.md"))
+LONGEST = 850  # characters: six lines of the manual, and a half for formulas
 DOCSTRING = re.compile(r"^```\{docstring\} (\S+)$", re.MULTILINE)
 FILE = re.compile(r"`((?:porescale|continuum_sph|tests|docs|cases)/[\w/.]+?)(?:::([\w.]+))?`")
 ROWS = re.compile(r"^```\{rows\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -97,6 +99,27 @@ def without_source(page: str, sources: str) -> list[str]:
     return wrong
 
 
+def long_paragraphs(page: str, longest: int = LONGEST) -> list[str]:
+    """First words of what a page says in one piece of more than ``longest`` characters: paragraphs and items of lists,
+    but no tables, equations or code."""
+    pieces = [it for part in re.split(r"\n\s*\n", page) for it in re.split(r"\n(?=[-*] |\d+\. )", part)]
+    return [it[:60] for it in pieces if len(it) > longest and not it.startswith(("|", "```", "$$", "<"))]
+
+
+@pytest.mark.parametrize("page", COMPARISONS, ids=lambda it: it.stem)
+def test_a_page_of_comparisons_names_what_there_is(page):
+    text = page.read_text(encoding="utf-8")
+    labels = {it for each in (*PAGES, *COMPARISONS) for it in LABEL.findall(each.read_text(encoding="utf-8"))}
+    assert missing_files(text) == []
+    assert [name for name in rows_named(text) if name not in rows()] == []
+    assert [name for name in QUOTED.findall(text) if name not in labels] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda it: it.stem)
+def test_a_page_says_one_thing_at_a_time(page):  # what was tried besides, and its figures: docs/theory/comparisons
+    assert long_paragraphs(page.read_text(encoding="utf-8")) == []
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda it: it.stem)
 def test_a_page_names_what_there_is(page):
     text = page.read_text(encoding="utf-8")
@@ -114,7 +137,7 @@ def test_every_page_is_in_the_map():
 
 
 def test_labels_of_equations_are_of_one_page_each():
-    labels = [it for page in PAGES for it in LABEL.findall(page.read_text(encoding="utf-8"))]
+    labels = [it for page in (*PAGES, *COMPARISONS) for it in LABEL.findall(page.read_text(encoding="utf-8"))]
     assert len(labels) == len(set(labels)) > 20
 
 
@@ -128,4 +151,5 @@ def test_wrong_names_are_found(tmp_path):  # the checks that must fail
     assert missing_files(page, tmp_path) == ["porescale/a.py::C.m", "porescale/b.py"]
     assert rows_named("```{rows}\nlbm.one\ndem.two\n```\nand `lbm.three`") == ["lbm.one", "dem.two", "lbm.three"]
     assert equations_astray("$$\nx\n$$ (one)\n{eq}`one` {eq}`two`") == ["two"]
+    assert long_paragraphs("a b\n\n- c\n- d e f\n\n| a long row |\n", 5) == ["- d e f"]
     assert without_source("Sources: [Who & Else 1999; Who 2000](sources.md).\n", "- Who, A. 1999: a") == ["Who 2000"]
