@@ -136,6 +136,12 @@ def test_every_page_is_in_the_map():
     assert sorted(contents) == [it.stem for it in PAGES if it.stem != "index"]
 
 
+def test_every_page_of_comparisons_is_in_their_list():
+    index = (ROOT / "docs" / "theory" / "comparisons" / "index.md").read_text(encoding="utf-8")
+    contents = re.findall(r"^\w+$", index.split("```{toctree}")[1], re.MULTILINE)
+    assert sorted(contents) == [it.stem for it in COMPARISONS if it.stem != "index"]
+
+
 def test_labels_of_equations_are_of_one_page_each():
     labels = [it for page in (*PAGES, *COMPARISONS) for it in LABEL.findall(page.read_text(encoding="utf-8"))]
     assert len(labels) == len(set(labels)) > 20
