@@ -178,6 +178,11 @@ class Component(Section):
         return []
 
     @property
+    def free(self) -> bool:
+        """Whether nothing is said of it."""
+        return self.velocity is None and self.displacement is None and self.force is None
+
+    @property
     def prescribes(self) -> bool:
         """Whether it prescribes the motion: not where the component is free or pushed."""
         return self.velocity is not None or self.displacement is not None

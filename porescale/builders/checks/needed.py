@@ -1,4 +1,4 @@
-"""Sections that others need, or that need others, and what must lie in the box."""
+"""Sections that need others, keys without effect for want of them, and what must lie in the box."""
 
 from porescale.builders.checks.combinations import (
     check_bonds,
@@ -77,6 +77,25 @@ def check_needed(scene: Scene) -> list[Fault]:
         repair = "add [permeability.window] with left, bottom, width, height"
         faults.append(Fault("permeability.window", None, "is needed where there is no packing", repair=repair))
     return faults + check_ring(scene)
+
+
+def without_effect(scene: Scene) -> list[str]:
+    """Warnings of keys that change nothing: friction where there are no grains, the ramp of a rectangle that stands,
+    a control that neither prescribes nor records."""
+    touched = [("gate", scene.gate)] if scene.gate else []
+    surfaces = [*touched, *((f"rectangle[{k}]", it) for k, it in enumerate(scene.rectangle))]
+    made = []
+    if scene.grains is None:
+        made += [f"{key}.friction = {it.friction:g} has no effect: there are no grains; leave it out"
+                 for key, it in surfaces if it.friction]  # fmt: skip
+    made += [f"rectangle[{k}].ramp = {it.ramp:g} s has no effect: its velocity is 0; leave it out"
+             for k, it in enumerate(scene.rectangle) if it.ramp and not any(it.velocity)]  # fmt: skip
+    return made + [
+        f"control[{k}] has no effect: x, y and rotation are free, and nothing is recorded; prescribe one of them,"
+        " or give record = true"
+        for k, it in enumerate(scene.control)
+        if not it.record and it.x.free and it.y.free and it.rotation.free
+    ]
 
 
 def _check_look(scene: Scene) -> list[Fault]:

@@ -1,6 +1,7 @@
 """`study …`: what accuracy costs (trade, levels), where to trust it (stability, extremes, convergence, endurance), and
 parts."""
 
+import itertools
 import json as json_text
 import time
 from collections.abc import Callable
@@ -75,7 +76,10 @@ def _extremes(package: Package) -> Callable[..., int]:
         json: Json = False,
     ) -> int:
         """Try more and more extreme input: what is stable, what is refused before it starts, what is stopped, and
-        why."""
+        why.
+
+        The files are written after each axis.
+        """
         from porescale.common.evidence import extremes as study
 
         assert package.extremes is not None
@@ -86,10 +90,11 @@ def _extremes(package: Package) -> Callable[..., int]:
         folder = output_folder(out)
         use_threads(threads)
         rows = []
-        for it in tries:
-            rows.append(it.tried())
-            say(f"{it.axis} {it.value}: {rows[-1].end} ({len(rows)} of {len(tries)})")
-        study.write(folder, _command_line(package, "extremes", names), rows)
+        for _, of_axis in itertools.groupby(tries, key=lambda it: it.axis):
+            for it in of_axis:
+                rows.append(it.tried())
+                say(f"{it.axis} {it.value}: {rows[-1].end} ({len(rows)} of {len(tries)})")
+            study.write(folder, _command_line(package, "extremes", names), rows)
         if json:
             print_json(map(asdict, rows))
         else:
@@ -266,7 +271,10 @@ def _parts(package: Package) -> Callable[..., int]:
         list_: List = False,
         json: Json = False,
     ) -> int:
-        """Measure what each kind of scene builds and costs, beside the smallest kernel for it, one thread."""
+        """Measure what each kind of scene builds and costs, beside the smallest kernel for it, one thread.
+
+        The files are written after each kind.
+        """
         from porescale.common.evidence import overhead as study
 
         assert package.parts is not None
@@ -279,11 +287,11 @@ def _parts(package: Package) -> Callable[..., int]:
             raise InputError(Fault("--rounds", rounds, "is out of range", "", ">= 1"))
         folder = output_folder(out)
         use_threads(1)
-        rows = []
+        about, rows = circumstances(package, _command_line(package, "parts", names), 1), []
         for kind in kinds:
             rows.append(study.measure(kind, rounds))
             say(f"{kind.name}: {rows[-1].ratio:.3f} of {kind.beside}")
-        study.write(folder, circumstances(package, _command_line(package, "parts", names), 1), rows)
+            study.write(folder, about, rows)
         if json:
             print_json(map(asdict, rows))
         else:

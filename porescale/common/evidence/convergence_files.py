@@ -54,7 +54,7 @@ def table(rows: Sequence[Stored]) -> list[str]:
     lines = []
     for row in rows:
         error = [math.nan if it is None else it for it in row["errors"]]
-        steps = ", ".join(f"{level:.3g}: {off:.3g}" for level, off in zip(row["levels"], error, strict=True))
+        steps = ", ".join(f"{level:.4g}: {off:.3g}" for level, off in zip(row["levels"], error, strict=True))
         expected = number(row["expected"])
         if row["expected"] is not None:
             expected = f"{row['expected']:g}, at least {row['expected'] - row['within']:.3g}"

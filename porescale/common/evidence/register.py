@@ -65,7 +65,7 @@ def choose(requested: Sequence[str], known: Iterable[str], what: str) -> list[st
     if unknown:
         from porescale.common.schema.messages import nearest  # brings pydantic, for which --help must not wait
 
-        repair = {name: nearest(name, [*names, *topics], "names") for name in unknown}
+        repair = {name: nearest(name, [*names, *topics], "names", topics) for name in unknown}
         raise InputError([Fault(name, None, f"no such {what}", repair=repair[name]) for name in unknown])
     wanted = {other for found in below.values() for other in found}
     return [name for name in names if not requested or name in wanted]

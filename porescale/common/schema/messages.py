@@ -22,12 +22,13 @@ def dotted(key: Key) -> str:
     return text
 
 
-def nearest(name: str, known: Iterable[str], what: str = "keys") -> str:
-    """A repair for an unknown name: the nearest known one, else all of them."""
+def nearest(name: str, known: Iterable[str], what: str = "keys", listed: Iterable[str] | None = None) -> str:
+    """A repair for an unknown name: the nearest known one, else all that are ``listed``, or all of them."""
     names = sorted(set(known))
     close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
     if close:
         return f"did you mean {close[0]!r}?"
+    names = names if listed is None else sorted(listed)
     return f"known {what}: {', '.join(names)}" if names else f"there are no {what} here"
 
 

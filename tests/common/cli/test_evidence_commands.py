@@ -10,6 +10,8 @@ import pytest
 
 from porescale.common.cli.application import application, main
 from porescale.common.evidence.convergence import Ladders
+from porescale.common.evidence.extremes import Extreme, Extremes
+from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
 from tests.reference.toy_package import TOY
 
 LEVELS = (8.0, 16.0, 32.0)
@@ -96,6 +98,35 @@ def test_convergence_keeps_each_ladder_as_soon_as_it_is_run(study, monkeypatch) 
     with contextlib.suppress(KeyboardInterrupt):  # a command may answer it with an exit code
         study(2.0, "--out", "seen")
     assert list(kept("seen/convergence.json")) == ["toy.one"]
+
+
+def test_extremes_keep_each_axis_as_soon_as_it_is_tried(tmp_path, monkeypatch) -> None:
+    def interrupted() -> str:
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    tries = Extremes([Extreme("depth", "mild", lambda: "calm"), Extreme("speed", "high", interrupted)])
+    with contextlib.suppress(KeyboardInterrupt):  # a command may answer it with an exit code
+        main(application(replace(TOY, extremes=lambda: tries)), ["study", "extremes", "--out", "seen"])
+    assert [row["value"] for row in json.loads(Path("seen/extremes.json").read_text(encoding="utf-8"))] == ["mild"]
+
+
+def test_parts_keep_each_kind_as_soon_as_it_is_measured(tmp_path, monkeypatch) -> None:
+    def interrupted() -> BuiltScene:
+        raise KeyboardInterrupt
+
+    def sum_up_to(count: int) -> None:
+        sum(range(1000 * count))  # of nothing no ratio can be made
+
+    def calm() -> BuiltScene:
+        return BuiltScene(None, ["water"], 1, sum_up_to, sum_up_to)
+
+    monkeypatch.chdir(tmp_path)
+    kinds = SceneKinds([SceneKind(it.__name__, "cell", SMALLEST, it, 1) for it in (calm, interrupted)])
+    with contextlib.suppress(KeyboardInterrupt):  # a command may answer it with an exit code
+        words = ["study", "parts", "--out", "seen", "--rounds", "1"]
+        main(application(replace(TOY, parts=lambda: kinds)), words)
+    assert list(kept("seen/parts.json")) == ["calm"]
 
 
 def test_convergence_lists_and_prints(study) -> None:

@@ -173,6 +173,15 @@ def test_a_repeat_needs_a_value_of_its_own(toy, scene, values):
     assert not (scene.parent / "runs").exists()
 
 
+def test_a_key_that_repeats_set_is_set_by_nothing_else(toy, scene):
+    code, _, (line,) = toy("sweep", "scene.toml", "--over", "decay.rate=5,6", "--set", "decay.rate=4")
+    assert code == 2
+    assert line == "--set: decay.rate: is set by every repeat, too, as --over says; leave one out"
+    assert not (scene.parent / "runs").exists()
+    # Counted from the scene's own value it does say something.
+    assert toy("sweep", "scene.toml", "--repeat", "2", "--over", "noise.seed", "--set", "noise.seed=7")[0] == 0
+
+
 def test_a_scene_that_draws_nothing_is_refused_and_told_what_to_do(tmp_path):
     (tmp_path / "calm.toml").write_text("[decay]\nrate = 3\n")
     with pytest.raises(InputError, match=r"--repeat = 4: repeats the same run: .* --over section\.key=a,b,c"):

@@ -1,0 +1,43 @@
+"""Keys that change nothing are said before a run, and their twins that change something are not."""
+
+import pytest
+
+from porescale.builders.derive import derive
+from tests.reference.scenes import column, dry, grain
+
+WATER_ALONE = {"grains": None, "contact": None, "coarse_graining": None}
+GRAIN = {"gate": None, "grains__packing": None, "grains__density": 2500, "grains__grain": [grain(0.002, 0.002)]}
+BLOCK = {"lower": [0.002, 0.0], "upper": [0.003, 0.002]}
+
+
+def said(scene):
+    """The warnings about keys without effect."""
+    return [line for line in derive(scene).warnings if "has no effect" in line]
+
+
+@pytest.mark.parametrize(
+    ("make", "nothing", "line", "something"),
+    [
+        (column, WATER_ALONE | {"gate__friction": 0.3}, "gate.friction = 0.3", {"gate__friction": 0.3}),
+        (
+            column, WATER_ALONE | {"gate": None, "rectangle": [BLOCK | {"friction": 0.3}]},
+            "rectangle[0].friction = 0.3", WATER_ALONE | {"gate": None, "rectangle": [BLOCK]},
+        ),
+        (
+            column, WATER_ALONE | {"gate": None, "rectangle": [BLOCK | {"ramp": 0.01}]},
+            "rectangle[0].ramp = 0.01 s",
+            WATER_ALONE | {"gate": None, "rectangle": [BLOCK | {"ramp": 0.01, "velocity": [0.001, 0]}]},
+        ),
+        (
+            dry, GRAIN | {"control": [{"grain": 0}]}, "control[0]", GRAIN | {"control": [{"grain": 0, "record": True}]},
+        ),
+        (
+            dry, GRAIN | {"control": [{"grain": 0, "y": "free"}]}, "control[0]",
+            GRAIN | {"control": [{"grain": 0, "y": {"force": 1e-3}}]},
+        ),
+    ],
+)  # fmt: skip
+def test_a_key_that_changes_nothing_is_said(make, nothing, line, something):
+    (found,) = said(make(**nothing))
+    assert found.startswith(f"{line} has no effect")
+    assert said(make(**something)) == []
