@@ -43,7 +43,7 @@ class InclusionSection(Section):
     pressure: float = quantity("Pa", 1e5, ge=1e-3, le=1e9, help="pressure of the air, of a gas")
     exponent: float | None = quantity("", None, ge=1.01, le=20, help="exponent: 7 of a liquid, 1.403 of a gas")
     surface_tension: float = quantity("N/m", 0.0, ge=0, le=1e6, help="surface tension against the water")
-    cohesion: float = quantity("Pa m^4", 0.0, ge=0, le=1e6, help="a of eq. 54")
+    cohesion: float = quantity("Pa m^4", 0.0, ge=0, le=1e6, help="cohesion a of eq. 54")
     disc: tuple[Disc, ...] = pydantic.Field(min_length=1, description="discs of the second fluid")
 
     def overlaps(self, slack: float) -> list[Fault]:

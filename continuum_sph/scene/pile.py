@@ -5,6 +5,7 @@ from typing import Literal
 
 import pydantic
 
+from continuum_sph.scene.bounds import WHOLE
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Section, quantity
 
@@ -31,7 +32,10 @@ class SheetPileSection(Section):
     def faults(self, width: float, height: float, spacing: float) -> list[Fault]:
         """What is wrong with it in a tank of ``width`` by ``height``, m, with particles of a ``spacing``, m."""
         found = []
-        if not 4.0 * spacing < self.column(spacing) < width - 4.0 * spacing:
+        if width < (9.0 - WHOLE) * spacing:
+            found.append(Fault("numerics.spacing", spacing, "leaves fewer than 4 particles on each side of the pile",
+                               "m", f"<= {width / 9.0:g}"))  # fmt: skip
+        elif not 4.0 * spacing < self.column(spacing) < width - 4.0 * spacing:
             found.append(Fault("pile.x", self.x, "leaves fewer than 4 particles beside it", "m",
                                f"{4.5 * spacing:g} to {width - 4.5 * spacing:g}"))  # fmt: skip
         if self.lower_end(spacing) > height - 2.0 * spacing:

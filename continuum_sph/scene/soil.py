@@ -1,7 +1,7 @@
 """The section of the soil."""
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -26,7 +26,9 @@ through centres of the lattice, where round-off would decide, and left and right
 class Outline(Section):
     """A closed polygon: corners (x, y), m, in order."""
 
-    outline: tuple[tuple[float, float], ...] = quantity("m", ge=0, le=1e5, help="corners (x, y) of the outline")
+    outline: Annotated[tuple[tuple[float, float], ...], pydantic.Field(min_length=3)] = quantity(
+        "m", ge=0, le=1e5, help="corners (x, y) of the outline"
+    )
 
     def top(self, x: Floats) -> Floats:
         """Height (m) of its highest point above each ``x`` (n,) m; below all numbers where there is none."""
@@ -117,7 +119,7 @@ class SoilNumerics(Section):
     stress_diffusion: float | None = quantity(
         "", None, ge=0, le=1000, help="diffusion of stress and volume per shear strain"
     )
-    restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="the same by sound: soil creeps")
+    restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="diffusion by sound, too: soil creeps")
     parting: float = quantity("", 4.0, ge=0, le=20, help="rate at which particles too near part, per shear strain")
     repulsion: float = quantity(
         "", 10.0, ge=0, le=100, help="repulsion that keeps soil that bears tension from clumping"
@@ -153,10 +155,10 @@ class SoilSection(Section):
     density: float = quantity("kg/m^3", 1590.0, ge=1, le=1e5, help="mass of grains per whole volume: 1 - n of theirs")
     porosity: float = quantity("", 0.4, ge=0, le=0.99, help="porosity at the start")
     stiffness: float = quantity("Pa", 2e6, ge=1, le=1e12, help="Young's modulus at the reference stress")
-    reference: float = quantity("Pa", 1e5, ge=1e-3, le=1e12, help="mean stress at which it is given")
+    reference: float = quantity("Pa", 1e5, ge=1e-3, le=1e12, help="mean stress at which stiffness is given")
     exponent: float = quantity(
         "", 0.0, ge=0, le=1,
-        help='m: how stiffness grows with mean stress; from stress "none" give numerics.settle, too',
+        help='exponent m of stiffness over mean stress; from stress "none" give numerics.settle, too',
     )  # fmt: skip
     least: float = quantity("Pa", 100.0, ge=1e-6, le=1e12, help="mean stress below which soil gets no softer")
     poisson: float = quantity("", 0.3, ge=0, le=0.49, help="Poisson's ratio")
@@ -170,7 +172,7 @@ class SoilSection(Section):
     elastic: bool = pydantic.Field(False, description="never yields")
     permeability: float = quantity(
         "m/s", 1e-3, ge=1e-12, le=10,
-        help="k of full pores at the porosity of the start; under 9.81 m/s2, with soil.suction under gravity",
+        help="k of full pores under 9.81 m/s2, at the porosity of the start; with soil.suction under gravity",
     )  # fmt: skip
     permeability_law: Literal["constant", "kozeny-carman"] = pydantic.Field(
         default="constant", description="how permeability follows the porosity"
@@ -236,9 +238,7 @@ class SoilSection(Section):
         found = []
         outlines: list[tuple[str, tuple[Outline, ...]]] = [("body", self.body), ("watch", self.watch)]
         for key, body in ((f"soil.{kind}[{k}].outline", it) for kind, of in outlines for k, it in enumerate(of)):
-            if len(body.outline) < 3:
-                found.append(Fault(key, len(body.outline), "corners hold nothing", "", ">= 3"))
-            elif tip := body.spike():
+            if tip := body.spike():
                 problem = "is the tip of a spike: the outline goes out and back along one line"
                 found.append(Fault(key, tip, problem, "m", repair="take this corner out"))
             elif body.crosses():

@@ -39,14 +39,18 @@ class Touch(Section):
     young: float | None = quantity("Pa", None, ge=1, le=1e15, help="Young's modulus of the grains")
     poisson: float | None = quantity("", None, ge=0, le=0.5, help="Poisson's ratio of the grains")
     damping_ratio: float | None = quantity("", None, **RATIO, help="normal damping ratio, instead of restitution")
-    tangential_damping_ratio: float | None = quantity("", None, **RATIO, help="left out: that of the normal")
+    tangential_damping_ratio: float | None = quantity(
+        "", None, **RATIO, help="tangential damping ratio; left out, that of the normal"
+    )
     rolling_friction: float | None = quantity(
         "", None, **FRICTION, help="largest rolling torque over reduced radius and normal force"
     )
     rolling_stiffness: float | None = quantity("N/m", None, **STIFFNESS, help="rolling stiffness per metre of depth")
     rolling_damping: float | None = quantity("N s/m", None, **DASHPOT, help="rolling damping per metre of depth")
     rolling_stiffness_ratio: float | None = quantity("", None, **RATIO, help="rolling over tangential stiffness")
-    rolling_damping_ratio: float | None = quantity("", None, **RATIO, help="left out: that of the normal")
+    rolling_damping_ratio: float | None = quantity(
+        "", None, **RATIO, help="rolling damping ratio; left out, that of the normal"
+    )
 
     def numbers(self) -> dict[str, float]:
         """The numbers that are given, by key."""

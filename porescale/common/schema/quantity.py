@@ -51,8 +51,8 @@ class Quantity(Range):
 
     def repair(self) -> str:
         """How to correct a wrong value, as text."""
-        what = f"give the {self.help}" if self.help else "give it"
-        return f'{what} in {self.unit}, as 1.5 or "1.5 {self.unit}"' if self.unit else f"{what} as a number"
+        form = f'give it in {self.unit}, as 1.5 or "1.5 {self.unit}"' if self.unit else "give it as a number"
+        return f"{form} ({self.help})" if self.help else form
 
     def fault(self, key: str, value: Any, problem: str, repair: str = "") -> Fault:
         """A fault of this quantity at ``key``."""

@@ -21,7 +21,7 @@ class Bonds(Section):
         (), description='which: "polygon" for all of them, "clump 3" for one, numbers from 0 (default: all bodies)'
     )
     within: tuple[float, float, float, float] | None = quantity(
-        "m", None, ge=-1e3, le=1e3, help="only of bodies with their centre in it, [left, bottom, right, top]"
+        "m", None, ge=-1e3, le=1e3, help="rectangle with the centres of the bodies, [left, bottom, right, top]"
     )
     factor: float = quantity("", 1.0, gt=0, le=1e6, help="back tension over the force of the contact at the time")
     tension: float | None = quantity("N/m", None, gt=0, le=1e12, help="mean back tension, instead of factor")

@@ -26,7 +26,7 @@ class Framed(Section):
     velocity: tuple[float, float] = quantity("m/s", (0.0, 0.0), **SPEED, help="velocity of the centre at the start")
     spin: float = quantity("rad/s", 0.0, ge=-1e7, le=1e7, help="angular velocity at the start, counter-clockwise")
     held: bool = pydantic.Field(False, description="stands still whatever pushes it; [[control]] moves it otherwise")
-    at: Points = quantity("m", (), **PLACE, help="a copy at each of these points (default: one, as it is given)")
+    at: Points = quantity("m", (), **PLACE, help="points with a copy at each (default: one, as it is given)")
     angle: tuple[float, ...] = quantity("rad", (), ge=-1e3, le=1e3, help="angle of each, about its point")
 
     def _faults(self) -> list[Fault]:

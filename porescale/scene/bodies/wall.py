@@ -19,8 +19,8 @@ class Wall(Timed):
     """
 
     name: str = pydantic.Field("", description="name in the columns (default: wall and its number)")
-    x: float = quantity("m", ge=-1e3, le=1e3, help="a point of the wall, about which it turns")
-    y: float = quantity("m", ge=-1e3, le=1e3, help="a point of the wall, about which it turns")
+    x: float = quantity("m", ge=-1e3, le=1e3, help="point of the wall, about which it turns")
+    y: float = quantity("m", ge=-1e3, le=1e3, help="point of the wall, about which it turns")
     normal: tuple[float, float] = quantity("", ge=-1e6, le=1e6, help="direction towards the grains, of any length")
     friction: float | None = quantity("", None, ge=0, le=1e3, help="friction coefficient (default: that of the sides)")
     velocity_x: TimeFunction | None = None

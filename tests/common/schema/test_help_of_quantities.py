@@ -1,4 +1,4 @@
-"""What messages say of a number: its help completes "give the ..."."""
+"""What messages say of a number: its help completes "give the ...", and begins with a noun."""
 
 import math
 import re
@@ -9,7 +9,7 @@ import pytest
 from porescale.common.schema.quantity import Quantity, Refused
 
 ROOT = Path(__file__).resolve().parents[3]
-NO_NOUN = re.compile(r'help="(of|from|at|in|to|under|by|for|with|how|whether|if|as) ')
+NO_NOUN = re.compile(r"""help=["'](of|from|at|in|to|under|by|for|with|how|whether|if|as|a|an|the|only|left out:|m:) """)
 
 
 def without_a_noun(text: str) -> list[str]:
@@ -22,8 +22,15 @@ def test_every_help_begins_with_what_it_is():
     assert [line for file in files for line in without_a_noun(file.read_text(encoding="utf-8"))] == []
 
 
-def test_a_help_that_begins_with_a_preposition_is_found():
-    assert without_a_noun('density: float = quantity("kg/m^3", help="of grains per volume")') != []
+def test_a_help_that_begins_with_something_else_is_found():
+    for help in ("of grains per volume", "a point", "the same by sound", "left out: that of the normal"):
+        assert without_a_noun(f'density: float = quantity("kg/m^3", help="{help}")') != []
+
+
+def test_a_repair_of_a_wrong_unit_says_the_unit_before_what_the_number_is():
+    help = "k of full pores; with soil.suction under gravity"
+    assert Quantity("m/s", help=help).repair() == f'give it in m/s, as 1.5 or "1.5 m/s" ({help})'
+    assert Quantity("", help="exponent m").repair() == "give it as a number (exponent m)"
 
 
 @pytest.mark.parametrize(

@@ -47,6 +47,15 @@ def test_every_empty_body_is_named_and_one_within_the_column_of_a_pile_is_empty(
         report(scene(low, beside, pile={"x": 0.475, "tip": 0.05}))
 
 
+def test_a_tank_too_narrow_for_a_pile_is_refused_by_its_spacing_not_by_a_range_without_a_place():
+    narrow = [[0, 0], [0.4, 0], [0.4, 0.2], [0, 0.2]]
+    with pytest.raises(InputError) as caught:
+        tank_scene(0.4, 0.5, 0.05, 0.1, lid=False, soil={"body": [{"outline": narrow}]}, pile={"x": 0.2, "tip": 0.1})
+    assert [(fault.key, fault.allowed) for fault in caught.value.faults] == [("numerics.spacing", "<= 0.0444444")]
+    with pytest.raises(InputError, match=r"pile\.x = 0\.19 m: .* \(allowed: 0\.225 to 0\.225 m\)"):
+        tank_scene(0.45, 0.5, 0.05, 0.1, lid=False, soil={"body": [{"outline": narrow}]}, pile={"x": 0.19, "tip": 0.1})
+
+
 POOL = {"name": "river", "left": 0.0, "right": 0.15, "level": 0.2}
 DRAIN = {"left": 0.75, "right": 1.0, "level": 0.0}
 

@@ -39,7 +39,8 @@ def test_a_watched_part_has_the_mean_displacement_of_what_was_in_its_outline():
             [{"outline": [[0.6, 0.1], [0.7, 0.1], [0.7, 0.2]]}],
             r"soil\.watch\[0\]\.outline .* holds no particle",
         ),
-        ([{"outline": [[0.1, 0.1], [0.2, 0.2]]}], r"soil\.watch\[0\]\.outline = 2: corners hold nothing"),
+        ([{"outline": [[0.1, 0.1], [0.2, 0.2]]}], r"outline = .*: has 2 entries where at least 3 belong"),
+        ([{"outline": []}], r"soil\.watch\[0\]\.outline = \[\] m: has 0 entries where at least 3 belong"),
         ([{"outline": [[0.1, 0.1], [0.4, 0.2], [0.4, 0.1], [0.1, 0.2]]}], r"soil\.watch\[0\]\.outline: crosses itself"),
         (
             [{"outline": [[0.1, 0.1], [0.4, 0.1], [0.5, 0.1], [0.4, 0.1], [0.4, 0.2]]}],
