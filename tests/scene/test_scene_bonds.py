@@ -74,6 +74,22 @@ def test_bonds_break_at_k_times_their_overlap_and_a_factor_makes_them_stronger()
     assert strength(factor=1.5) == pytest.approx(1.5 * plain, rel=0.02)
 
 
+def test_bonds_made_on_the_way_leave_the_energy_budget_closed():
+    # Squares that press each other fly apart, and are bonded on the way: the energy that bonds bring, -b d, is none
+    # that anything turned over.  With it the residual is of the size of all elastic energy.
+    residuals = []
+    for step in (4e-6, 1e-6):
+        simulation = build(wall(bonds={"at": 1e-4}, output__energy=True, contact__step=step))
+        while simulation.time < 2e-4:
+            simulation.advance(1)
+        series = simulation.series()
+        assert series["bonds ()"] > 0
+        assert series["elastic energy, normal (J/m)"] < 0
+        residuals.append(abs(series["residual (J/m)"]) / series["turned over (J/m)"])
+    assert residuals[0] < 0.02
+    assert residuals[1] < residuals[0] / 2  # falls with the step
+
+
 def test_bonds_are_made_at_their_time_between_the_chosen():
     later = {"at": 2e-4, "bodies": ["polygon"], "within": [2.9e-3, 0, 5e-3, 5e-3]}
     rest = [{"polygon": k, **{axis: {"velocity": 0.0} for axis in ("x", "y", "rotation")}} for k in range(3)]
@@ -124,6 +140,9 @@ def test_cracks_lie_along_the_common_side():
         ({"bodies": ["polygon 7"]}, "bonds[0].bodies[0] = 'polygon 7': there is no such body (allowed: of polygon)"),
         ({"within": [5e-3, 5e-3, 6e-3, 6e-3]}, "bonds[0].at = 0.0 s: nothing touches, so there is nothing to bond"),
         ({"known": [[0, 99, 0, 1.0]]}, "bonds[0].known[0]: there are 12 discs and corners, and 12 segments"),
+        ({"known": [[2, 2, 0, 1.0]]}, "bonds[0].known[0]: bonds a body to itself"),
+        ({"known": [[1, 4, 0, 1.0], [1, 2, 1, 1.0]]}, "bonds[0].known[1]: bonds a body to itself"),
+        ({"known": [[1, 4, 0, 1.0], [4, 1, 0, 1.0]]}, "bonds[0].known[1]: bonds what an earlier row bonds"),
         ({"bodies": ["polygon 7"], "at": 2e-4}, "bonds[0].bodies[0] = 'polygon 7': there is no such body"),
         ({"known": [[0, 99, 0, 1.0]], "at": 2e-4}, "bonds[0].known[0]: there are 12 discs and corners"),
     ],

@@ -105,23 +105,24 @@ def check_walls(scene: Scene) -> list[Fault]:
             along = f"[{side.speed:g}, 0]" if name in ("bottom", "top") else f"[0, {side.speed:g}]"
             problem, repair = "is felt by a fluid alone, and there is none", f"write velocity = {along}, for grains"
             faults.append(Fault(f"domain.{name}.speed", side.speed, problem, "m/s", repair=repair))
-    names = names_of(scene.wall, "wall")
     columns = [*SIDES, *(["gate"] if scene.gate else []), *(f"rectangle {k}" for k in range(len(scene.rectangle)))]
     faults += [
         Fault(f"wall[{k}].name", name, "is taken", repair="give each its own")
-        for k, name in enumerate(names)
-        if name in columns or name in names[:k]
+        for k, name in enumerate(names_of(scene.wall, "wall"))
+        if name in columns
     ]
     return faults
 
 
 def check_names(scene: Scene) -> list[Fault]:
-    """What is wrong with names of measurements, from which columns have theirs."""
+    """What is wrong with names of measurements, walls and containers, from which columns have theirs."""
     return [
         *name_faults("probe", scene.probe, "probe"),
         *name_faults("line", scene.line, "line"),
         *name_faults("flux", scene.flux, "section"),
         *name_faults("region", scene.region, "region"),
+        *name_faults("wall", scene.wall, "wall"),
+        *name_faults("container", scene.container, "container"),
     ]
 
 

@@ -128,6 +128,11 @@ def _check_names(scene: Scene, contact: Contact) -> list[Fault]:
             named.append(("grains.packing.material", scene.grains.packing.material))
     allowed = ", ".join(known) or "none: there is no [[material]]"
     faults = [Fault(key, name, "no such material", "", allowed) for key, name in named if name and name not in known]
+    pairs = [sorted(it.materials) for it in contact.pair]
+    for k, pair in enumerate(pairs):
+        if pair in pairs[:k]:
+            problem = f"is the pair of contact.pair[{pairs.index(pair)}], too"
+            faults.append(Fault(f"contact.pair[{k}].materials", ", ".join(pair), problem, repair="put both into one"))
     if known and contact.wall_friction is not None:
         problem = "friction at walls follows from their material"
         repair = "give wall_material, or a [[contact.pair]] with it"

@@ -12,7 +12,7 @@ from porescale.builders.initial.frames import Placed
 from porescale.builders.initial.placed import controls_by_hand, counted, members
 from porescale.common.core.errors import Fault
 from porescale.common.core.types import Floats
-from porescale.common.schema.names import names_of
+from porescale.common.schema.names import names_of, sign_faults
 from porescale.dem.bodies.union import outline
 from porescale.dem.sanity import WORST_OF_CORNERS, WORST_OVERLAP
 from porescale.scene.bodies.control import Controlled
@@ -87,7 +87,7 @@ class Driven(NamedTuple):
 def check_controls(scene: Scene, count: int, faults: list[Fault]) -> None:
     """Add faults of controls; ``count``: grains that are free, the discs of clumps last."""
     bodies = members(scene.clump)
-    single, seen, names = count - sum(map(len, bodies)), [], []
+    single, seen, names = count - sum(map(len, bodies)), [], names_of(scene.container, "container")
     for k, it in enumerate(scene.control):
         body, number = it.of
         key, most = f"control[{k}].{body}", single if body == "grain" else counted(scene, body)
@@ -96,6 +96,8 @@ def check_controls(scene: Scene, count: int, faults: list[Fault]) -> None:
             faults.append(Fault(key, number, f"there is no such {body}", "", allowed))
         if it.of in seen:
             faults.append(Fault(key, number, "is controlled twice", repair="put both into one [[control]]"))
+        elif bad := sign_faults(f"control[{k}].name", it.called):
+            faults += bad
         elif it.called in names:
             faults.append(Fault(f"control[{k}].name", it.called, "is taken", repair="give each its own"))
         seen.append(it.of)

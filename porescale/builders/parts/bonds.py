@@ -17,6 +17,7 @@ from porescale.dem.bodies.bonding import bond, segments_now
 from porescale.dem.bodies.rigid import as_bodies
 from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.grains import Grains
+from porescale.dem.measures.energy import count_in_bonds, energy_of_bonds
 from porescale.dem.measures.region import Region
 from porescale.dem.motion.drivers import Clump as ClumpNumber
 from porescale.dem.sanity import WORST_OVERLAP
@@ -87,8 +88,10 @@ class BondsPart(Part):
         while self.made < len(self.sections) and time >= self.sections[self.made][1].at - 0.5 * step:
             key, section = self.sections[self.made]
             before = 0 if self.grains.bonds is None else len(self.grains.bonds.back)
+            stored = energy_of_bonds(self.grains)
             if section.known:
                 self._join(section)
+                count_in_bonds(self.grains, stored)
                 self._made(before)
                 continue
             bodies = self._within(self.chosen[self.made], section)
@@ -96,6 +99,7 @@ class BondsPart(Part):
             if count:
                 own = self.grains.bonds.back[before:]  # type: ignore[union-attr]
                 own *= section.factor if section.tension is None else section.tension / float(np.mean(own[own > 0.0]))
+                count_in_bonds(self.grains, stored)
                 self._made(before)
                 continue
             nothing = "nothing touches"
@@ -121,7 +125,7 @@ class BondsPart(Part):
         self.grains.bonds = made if self.grains.bonds is None else self.grains.bonds.joined(made)
 
     def _require_numbers(self, key: str, section: Bonds) -> None:
-        """InputError where a section gives a bond by a number that there is not."""
+        """InputError where a section gives a bond by a number that there is not, within a body, or twice."""
         grains = self.grains
         ends = np.array([row[:3] for row in section.known], np.int64).reshape(-1, 3)
         segments = 0 if grains.segments is None else len(grains.segments.ends)
@@ -130,6 +134,16 @@ class BondsPart(Part):
         if len(bad):
             problem = f"there are {grains.discs.count} discs and corners, and {segments} segments"
             raise InputError(Fault(f"{key}.known[{bad[0]}]", None, problem, repair="number them from 0"))
+        held = [(*sorted(row[:2].tolist()), 0) if row[2] == 0 else tuple(row.tolist()) for row in ends]
+        for k, (here, other, sided) in enumerate(ends.tolist()):
+            two = int(grains.segments.ends[other, 0]) if sided and grains.segments else other
+            if self.bodies.kind[here] == self.bodies.kind[two] and self.bodies.number[here] == self.bodies.number[two]:
+                problem, repair = "bonds a body to itself", "name discs, corners or segments of two bodies"
+            elif held[k] in held[:k]:
+                problem, repair = "bonds what an earlier row bonds", "give each bond once"
+            else:
+                continue
+            raise InputError(Fault(f"{key}.known[{k}]", None, problem, repair=repair))
 
     def doubts(self, first: int = 0) -> list[str]:
         """Warnings about the bonds from number ``first`` on that pull too hard, as they are now.

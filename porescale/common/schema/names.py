@@ -31,11 +31,17 @@ def name_faults(key: str, sections: Sequence[Named], kind: str) -> list[Fault]:
     found, names = [], names_of(sections, kind)
     for number, name in enumerate(names):
         place = f"{key}[{number}].name"
-        if not name.strip():
-            found.append(Fault(place, name, "is blank", repair="give a name, or leave it out"))
-        elif any(unicodedata.category(sign) in BREAKING for sign in name):
-            problem = "has control characters, which break the tables"
-            found.append(Fault(place, name, problem, repair="take them out"))
+        if bad := sign_faults(place, name):
+            found += bad
         elif name in names[:number]:
             found.append(Fault(place, name, f"is that of another {kind}", repair="rename it"))
     return found
+
+
+def sign_faults(place: str, name: str) -> list[Fault]:
+    """What is wrong with the characters of the ``name`` at the key ``place``."""
+    if not name.strip():
+        return [Fault(place, name, "is blank", repair="give a name, or leave it out")]
+    if any(unicodedata.category(sign) in BREAKING for sign in name):
+        return [Fault(place, name, "has control characters, which break the tables", repair="take them out")]
+    return []

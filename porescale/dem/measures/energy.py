@@ -11,6 +11,7 @@ step, moving surfaces and forces that change from call to call to first order in
 
 All terms refer to the last force evaluation: positions a step back, springs and losses as they were left by it.
 Velocities that an owner writes between steps are no work here: held components are left out of the kinetic energy.
+Bonds made on the way are no work either (count_in_bonds).
 """
 
 import numpy as np
@@ -126,6 +127,27 @@ def elastic(grains: State, dt: float = 0.0) -> tuple[float, float, float]:
         parts.append((stored_in_bonds(position, d.radius, segments, bonds, grains.cell), 0.0, 0.0))
     normal, tangential, rolling = (float(part) for part in np.sum(parts, axis=0))
     return normal, tangential, rolling
+
+
+def energy_of_bonds(grains: State) -> float:
+    """Energy of all bonds that hold, J/m, below zero: the mean of that now and at the last force evaluation, so that of
+    bonds just made is what is missing once their first force has done work over half a step."""
+    framed = framed_parts(grains)
+    if framed is None:
+        return 0.0
+    segments, bonds = framed
+    d, found = grains.discs, 0.0
+    for dt in (0.0, grains.last_dt):
+        position, cell = before(d.position, d.velocity, grains.cell, dt)
+        found += 0.5 * float(stored_in_bonds(position, d.radius, segments, bonds, cell))
+    return found
+
+
+def count_in_bonds(grains: State, was: float) -> None:
+    """Count bonds made since ``energy_of_bonds`` gave ``was`` (J/m) as there from the begin of the budget on: what
+    makes them is no work of anything in it.  Nothing where no budget has begun."""
+    if grains.budget_start is not None:
+        grains.budget_start[0] += energy_of_bonds(grains) - was
 
 
 def kinetic(grains: State, budget: Floats) -> tuple[float, float]:

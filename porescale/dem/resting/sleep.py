@@ -57,7 +57,7 @@ class Sleep:
     def __init__(self, grains: State, weight: Floats, share: float = 0.01, after: float | None = None) -> None:
         if grains.steered or grains.segments is not None or grains.bonds is not None or grains.reach is not None:
             raise InputError(Fault("sleep", None, "is for free discs only", repair="leave it out"))
-        count, smallest = grains.discs.count, float(grains.discs.radius.min(initial=0.0))
+        count, smallest = grains.discs.count, float(grains.discs.radius.min(initial=np.inf))
         self.allowed = share * np.abs(weight)
         self.speed = share * np.sqrt(np.abs(weight) * grains.discs.radius / grains.discs.mass)
         lightest = float(grains.discs.mass.min(initial=np.inf))

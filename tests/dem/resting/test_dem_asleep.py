@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import porescale as ps
 from porescale import Scene
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
@@ -133,6 +134,33 @@ def test_a_scene_refuses_sleep_beside_what_knows_none():
         validate(Scene, table | {"control": [{"grain": 0, "x": {"velocity": 1.0}}]})
     with pytest.raises(InputError, match="without weight"):
         validate(Scene, table | {"gravity": (0.0, 0.0)})
+
+
+@ps.contact_law(keys={"stiffness": "N/m", "damping": "N s/m"})
+def own_law(overlap, closing, radius, mass, p):
+    return max(0.0, p.stiffness * overlap + p.damping * closing)
+
+
+@pytest.mark.parametrize(
+    "contact",
+    [
+        {"law": "hertz", "young": 1e8, "poisson": 0.2, "restitution": 0.3},
+        {"law": own_law, "stiffness": 1e5, "damping": 3},
+    ],
+    ids=["hertz", "own"],
+)
+def test_grains_sleep_whose_stiffness_depends_on_their_radius(contact):
+    # Their stiffest contact is that of the smallest radius there is, not of none, on which no time at rest would be
+    # long enough.
+    scene = Scene(
+        domain={"width": 0.05, "height": 0.05}, time={"end": 0.5},
+        output={"snapshot_interval": 0.5, "series_interval": 0.5},
+        grains={"density": 2500, "grain": [{"x": 0.02, "y": 0.003, "diameter": 0.006}]},
+        contact=contact, sleep={},
+    )  # fmt: skip
+    simulation = ps.build(scene)
+    simulation.run()
+    assert simulation.series()["grains asleep ()"] == 1.0
 
 
 def test_kernels_run_as_plain_python():
