@@ -163,7 +163,7 @@ class Scene(SceneBase):
             faults.append(Fault("air", "given", "has no room in full pores", repair="take out soil.saturated"))
         if self.air is not None and self.water.viscosity == 0.0:  # drag on air is that on water, times μ_a/μ_w
             problem = "leaves the drag on air without a measure: air passes soil as much easier as it is less viscous"
-            faults.append(Fault("water.viscosity", 0.0, problem, "Pa s", "> 0 with [air]"))
+            faults.append(Fault("water.viscosity", 0.0, problem, "Pa s", "> 0"))
         for index, column in enumerate(self.water.column):
             key = f"water.column[{index}]"
             slack = WHOLE * spacing
