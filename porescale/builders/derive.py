@@ -41,6 +41,9 @@ from porescale.scene.lattice import WHOLE, is_whole
 
 MANY = 1e6
 """Contact steps in a step of the fluid beyond which a unit is probably wrong."""
+LEAP = 100.0
+"""By how much shorter than contacts need a step is for the sake of a speed, which is then probably a slip: that of a
+wave through contacts of the stiffness given, some radii in such a step, is tens of times less."""
 ROUNDED = 1e-9
 """By what share a contact step is off one that goes into a step of the fluid a whole number of times, and counts as it:
 numbers of a scene are written with some ten digits."""
@@ -108,6 +111,12 @@ def derive(scene: Scene) -> Derived:
         safe = stable_step(every, *smallest)
         speed = expected_speed(scene, scales, sizes, frames)
         travel = travel_step(scene, speed, sizes[0] / 2, frames)
+        if scene.contact.step is None and SAFETY * travel * LEAP < safe:
+            warnings.append(
+                f"steps of {SAFETY * travel:.2g} s, {safe / (SAFETY * travel):.2g} times as many as contacts need: what"
+                f" moves at {speed:.2g} m/s, which is to be expected, needs them; a table that leaps from one value to"
+                " the next does so: let it take longer"
+            )
         safe = min(safe, SAFETY * travel)
         if frames and scales:
             safe = min(safe, longest_step(frames, speed))

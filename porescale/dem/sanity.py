@@ -4,6 +4,7 @@ import numpy as np
 
 from porescale.common.core.ranges import Range, misfit, require_in_range
 from porescale.common.core.types import Floats
+from porescale.dem.bodies.rigid import clumps_of
 from porescale.dem.finite import check_finite, unstable
 from porescale.dem.forces.walls import HIGH, LOW, PRESENT, X
 from porescale.dem.listing import current_pairs
@@ -79,12 +80,17 @@ def check(grains: State) -> None:
 
 
 def _prescribed(grains: State, disc: int) -> bool:
-    """Whether the velocity of a disc is prescribed, whatever the forces: by a hold or a control of x or y."""
+    """Whether the velocity of a disc is prescribed, whatever the forces: by a hold or a control of x or y, of one of a
+    body also of its rotation."""
     if 0 <= disc < len(grains.held) and grains.held[disc, :2].any():
         return True
-    control = grains.drivers.arrays.control if grains.drivers is not None else np.zeros((0, 4), np.int64)
-    own = (control[:, CLUMP] == 0) & (control[:, INDEX] == disc) & (control[:, AXIS] < 2) & (control[:, KIND] != PUSH)
-    return bool(own.any())
+    if disc < 0 or grains.drivers is None:
+        return False
+    control, clumps, of_clump, number = grains.drivers.arrays.control, clumps_of(grains), 0, disc
+    if clumps is not None and len(row := np.flatnonzero(clumps.member == disc)):
+        of_clump, number = 1, int(np.searchsorted(clumps.start, row[0], "right")) - 1
+    own = (control[:, CLUMP] == of_clump) & (control[:, INDEX] == number) & (control[:, KIND] != PUSH)
+    return bool((own & (control[:, AXIS] < 2 + of_clump)).any())
 
 
 def _check_travel(grains: State) -> None:

@@ -31,6 +31,8 @@ from porescale.demseg.numbers import Reader, table
 GM, BC, CF, CF0 = "in_gm.dat", "in_bc.dat", "in_cf.dat", "in_cf0.dat"
 MOST_MATERIALS = 255
 MOST_BODIES = 10_000_000
+LARGEST = 1e100
+"""Of sizes, densities, stiffnesses: their squares and cubes are numbers, too; 1/LARGEST is the smallest."""
 NEW, GO_ON, BONDED = 0, 1, 3
 PUSHED, MOVED = 0, 1
 AXES = ("x", "y", "rotation")
@@ -150,6 +152,8 @@ def _grains(file: Reader) -> Deck:
     file.must(x2 > x1, "x2", x2, f"> x1 = {x1:g}")
     file.must(y2 > y1, "y2", y2, f"> y1 = {y1:g}")
     file.must(thick >= 0.0, "thick", thick, ">= 0")
+    if thick > 0.0:
+        _sized(file, "thick", thick)
     random, bodies, lines = None, tuple[Body, ...](), tuple[tuple[int, ...], ...]()
     if mode == 0:
         random, own = _random(file, len(stuff), (x1, x2, y1, y2))
@@ -176,7 +180,7 @@ def _stuff(file: Reader) -> Stuff:
     values = file.record(*((name, float) for name in names))
     for name, value in zip(names, values, strict=True):
         if name in ("rho", "kn"):
-            file.must(value > 0.0, name, value, "> 0")
+            _sized(file, name, value)
         elif name == "mu":
             file.must(0.0 <= value < 90.0, name, value, "an angle of friction in degrees, 0 to 90")
         else:
@@ -184,11 +188,17 @@ def _stuff(file: Reader) -> Stuff:
     return Stuff(*values)
 
 
+def _sized(file: Reader, name: str, value: float) -> None:
+    """Note a fault of a size, density or stiffness that is not positive, or beyond what squares of it can be."""
+    fine = 1.0 / LARGEST < value < LARGEST
+    file.must(fine, name, value, f"{1.0 / LARGEST:.0e} to {LARGEST:.0e}" if value > 0.0 else "> 0")
+
+
 def _random(file: Reader, stuff: int, domain: Four) -> tuple[Random, tuple[int, ...]]:
     """What to make in mode 0, and the lines of radii, material and void ratio."""
     r1, r2 = file.record(("r1", float), ("r2", float))
     lines = [file.begun]
-    file.must(r1 > 0.0, "r1", r1, "> 0")
+    _sized(file, "r1", r1)
     file.must(r2 >= r1, "r2", r2, f">= r1 = {r1:g}")
     (material,) = file.record(("material", int))
     lines.append(file.begun)
@@ -220,7 +230,7 @@ def _body(
         lines.append(file.begun)
         file.must(ielm == k + 1, "ielm", ielm, f"{k + 1}: elements of a body are numbered from 1")
         if of_discs:
-            file.must(a > 0.0, "rad", a, "> 0")
+            _sized(file, "rad", a)
             _inside(file, domain, {"xc": b, "yc": c})
         else:
             file.must((a, b) != (c, d), "x2", c, "an end other than the first")

@@ -89,7 +89,7 @@ class Reader:
     def must(self, fine: bool, name: str, value: float, expected: str) -> None:
         """Note a fault of the field ``name`` of the last record unless it is ``fine``."""
         if not fine:
-            shown = int(value) if float(value).is_integer() else value
+            shown = int(value) if float(value).is_integer() and abs(value) < 1e15 else value
             self.faults.append(self._fault(name, shown, "makes no sense", expected))
 
     @property

@@ -57,6 +57,11 @@ class TimeFunction(Section):
         return max([abs(value) for value in self.values] or [abs(self.mean) + abs(self.amplitude)])
 
     @property
+    def least(self) -> float:
+        """The smallest value that it reaches."""
+        return min(self.values, default=self.mean - abs(self.amplitude))
+
+    @property
     def steepest(self) -> float:
         """The largest magnitude of its rate of change, 1/s of its unit."""
         pairs = list(zip(self.times, self.values, strict=True))

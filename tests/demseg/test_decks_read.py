@@ -132,6 +132,9 @@ def test_comments_and_blank_lines_are_passed_over(tmp_path):
         ("0.0d0 5.0d0 0.0d0\n", "0.0d0", "line 10, yc: the file ends here, expected a number"),
         ("5.0d0 0.0d0\n", "5.0d0 0.0d0\n3 4\n", "line 11, after the last record = '3': one value too many"),
         ("1.0d8", "1.0d999", "line 4, kn = '1.0d999': is too large"),
+        ("1.0d8", "1.0d200", "line 4, kn = 1e+200: makes no sense, expected 1e-100 to 1e+100"),
+        ("2.5d0 1.0d8", "1d-300 1.0d8", "line 4, rho = 1e-300: makes no sense, expected 1e-100 to 1e+100"),
+        ("1 2.0d0", "1 1d-300", "rad = 1e-300: makes no sense, expected 1e-100 to 1e+100"),
         (
             "0.0d0 5.0d0 0.0d0",
             "-10.5 5 0",

@@ -10,6 +10,7 @@ from porescale import Scene
 from porescale.builders.build import build
 from porescale.builders.derive import derive
 from porescale.builders.initial.rock import rock_discs
+from porescale.builders.parts.bonds import BondsPart
 from porescale.builders.report import report
 from porescale.common.core.errors import InputError, PorescaleWarning, Unstable
 from porescale.common.schema.sections import scene_as_dict, validate
@@ -152,6 +153,22 @@ def test_bonds_between_nobody_are_refused(bonds, line):
         assert refusals(lambda made=made: made(wall(bonds=bonds)))[0].startswith(line)
 
 
+def test_known_bonds_between_what_does_not_touch_are_warned_of():
+    def said(other):
+        lines = build(wall(bonds=[{"known": [[0, other, 0, 1.0]]}])).part(BondsPart).doubts()
+        return [line for line in lines if "does not touch" in line]
+
+    (line,) = said(10)
+    assert line.startswith(
+        "bonds between what does not touch break in their first step: 1 of bonds.known, such as [0, 10,"
+    )
+    simulation = build(wall(bonds=[{"known": [[0, 10, 0, 1.0]]}]))
+    simulation.advance(1)
+    assert simulation.series()["broken bonds ()"] == 1.0
+    made = build(wall(bonds=[{}]))
+    assert not [line for line in made.part(BondsPart).doubts() if "does not touch" in line]  # the check that must fail
+
+
 ROCK: dict[str, Any] = {
     "grains": {"density": 2500, "packing": {
         "left": 0.05, "bottom": 0.05, "width": 0.2, "height": 0.2, "diameter": 0.04, "size_spread": 0.25,
@@ -202,6 +219,19 @@ def test_bonds_of_what_a_rock_has_bonded_are_refused():
         "bonds[0].at = 0.0 s: nothing touches that is not bonded already, so there is nothing to bond; "
         "leave it out, or bond later"
     )
+
+
+@pytest.mark.parametrize(("strain", "least"), [([[0, 0], [1, -2]], -2), ([[0, 0.5], [1, -0.5]], -1)])
+def test_a_strain_that_presses_a_rock_to_nothing_is_refused(strain, least):
+    (line,) = refusals(lambda: rock("discs", strain=strain))
+    assert line.startswith(f"rock.strain = {float(least)}: presses the sample to nothing (allowed: > -1)")
+    assert rock("discs", strain=[[0, 0.5], [1, -0.4]]).rock
+
+
+def test_the_speed_to_expect_of_a_rock_is_that_of_its_plate():
+    pulled = derive(rock("discs", strain=[[0, 0], [1e-2, 2]]))
+    assert pulled.speed == pytest.approx(2 / 1e-2 * 0.2)
+    assert any("contacts are too soft" in line for line in pulled.warnings)
 
 
 def test_rock_without_a_pressed_packing_is_refused():

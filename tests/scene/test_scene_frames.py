@@ -234,7 +234,7 @@ def test_thin_bodies_at_speed_are_warned_of():
     assert not through(5e-5, contact={**hertz, "young": 1e10})
 
 
-def test_a_container_that_leaves_the_box_as_it_turns_is_warned_of():
+def test_a_container_that_leaves_the_box_as_it_turns_is_warned_of_and_said_to_be_driven_there():
     def beyond(angle: float) -> list[str]:
         turn = {"rotation": {"displacement": [[0, 0], [0.01, angle]]}, "pivot": [2e-3, 1e-3]}
         scene = framed(container=[{**FLOOR, **turn}], grains={"grain": [grain(6e-3, 6e-3)]})
@@ -244,6 +244,11 @@ def test_a_container_that_leaves_the_box_as_it_turns_is_warned_of():
     assert beyond(-0.14) == []
     (said,) = beyond(-0.16)
     assert said.startswith("floor leaves the box at t = 0.009")
+    turns = {"rotation": {"velocity": -150.0}, "pivot": [2e-3, 1e-3]}
+    simulation = build(framed(container=[{**FLOOR, **turns}], grains={"grain": [grain(6e-3, 6e-3)]}))
+    simulation.advance(round(0.01 / simulation.step_seconds))
+    with pytest.raises(Unstable, match="its motion is prescribed"):
+        simulation.check()
 
 
 def test_a_polygon_behind_a_wall_is_refused():

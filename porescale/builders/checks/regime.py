@@ -62,7 +62,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
     Fluid under a body force: see `forced_speed`; under a difference of pressure the parabola between the walls across
     it, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
     """
-    speed = max(given_speed(scene), _framed_speed(scene.container, frames))
+    speed = max(given_speed(scene), _framed_speed(scene.container, frames), strain_speed(scene, 0.0))
     if scene.grains and sizes:
         packing, free = scene.grains.packing, grain_speed(scene, scales, sizes, frames)
         if scales and packing:
@@ -86,6 +86,7 @@ def grain_speed(
     assert scene.grains
     g = math.hypot(*scene.gravity)
     speeds = [math.hypot(*it.velocity) + abs(it.spin) * it.diameter / 2 for it in by_hand(scene)]
+    speeds.append(strain_speed(scene, sizes[2]))
     for density in densities_of_bodies(scene):
         lighter = 1 - scales.density / density if scales else 1.0
         reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0, frames, lying=not impact)
@@ -95,6 +96,17 @@ def grain_speed(
             free = min(free, terminal_speed(sizes[2], abs(density / scales.density - 1) * g, scales.viscosity))
         speeds.append(free)
     return max(speeds)
+
+
+def strain_speed(scene: Scene, diameter: float) -> float:
+    """The largest speed (m/s) of what a given strain presses together: two grains of ``diameter`` (m) in a [cell], with
+    velocities relative to it, and a plate of [rock] and what lies at it."""
+    cell, rock, packing = scene.cell, scene.rock, scene.grains.packing if scene.grains else None
+    rates = [it.largest for it in (cell.rate_xx, cell.rate_yy, cell.rate_xy) if it] if cell else []
+    speed = max(rates, default=0.0) * diameter
+    if rock and rock.strain and packing:
+        speed = max(speed, rock.strain.steepest * (packing.width if rock.plates == "x" else packing.height))
+    return speed
 
 
 def given_speed(scene: Scene) -> float:
@@ -121,8 +133,10 @@ def _framed_speed(containers: Sequence[Container], frames: Sequence[Placed]) -> 
         size = float(np.ptp(np.array(it.frame.corners), axis=0).max())
         speeds.append(math.hypot(*it.frame.velocity) + abs(it.frame.spin) * size)
     for one in containers:
-        size = float(np.ptp(np.array(one.chain or one.ends).reshape(-1, 2), axis=0).max())
-        speeds.append(math.hypot(one.x.fastest, one.y.fastest) + one.rotation.fastest * size)
+        points = np.array(one.chain or one.ends).reshape(-1, 2)
+        size = float(np.ptp(points, axis=0).max())
+        arm = 0.0 if one.pivot is None else float(np.hypot(*(points - one.pivot).T).max())
+        speeds.append(math.hypot(one.x.fastest, one.y.fastest) + one.rotation.fastest * max(size, arm))
     return max(speeds)
 
 

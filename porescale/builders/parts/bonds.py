@@ -146,7 +146,7 @@ class BondsPart(Part):
             raise InputError(Fault(f"{key}.known[{k}]", None, problem, repair=repair))
 
     def doubts(self, first: int = 0) -> list[str]:
-        """Warnings about the bonds from number ``first`` on that pull too hard, as they are now.
+        """Warnings about the bonds from number ``first`` on that hold nothing, or pull too hard, as they are now.
 
         A bond of tension b on a contact of overlap d that carries f sets its bodies into motion with (b - f)/m, m their
         reduced mass.  Where that is more than d in a step, (b - f) dt²/m > d, steps decide whether they part when they
@@ -163,14 +163,22 @@ class BondsPart(Part):
             d.position, d.radius, grains.body_mass, grains.material, bonds.ends, segments, grains.contact, grains.cell,
             carried,
         )  # fmt: skip
-        here = bonds.ends[:, 0]
+        here, found = bonds.ends[:, 0], list[str]()
         overlap = d.radius[here] + d.radius[other] - np.hypot(way[:, 0], way[:, 1])
-        apart = (np.arange(n) >= first) & (carried > 0.0) & (overlap > 0.0) & (bonds.back > carried)
+        own = np.arange(n) >= first
+        if (free := own & (overlap <= 0.0) & (bonds.back > 0.0)).any():
+            k = int(np.argmin(np.where(free, overlap, np.inf)))
+            ends = ", ".join(str(number) for number in bonds.ends[k])
+            found.append(
+                f"bonds between what does not touch break in their first step: {int(free.sum())} of bonds.known, such"
+                f" as [{ends}, …], {-overlap[k]:.3g} m apart; place bodies closer"
+            )
+        apart = own & (carried > 0.0) & (overlap > 0.0) & (bonds.back > carried)
         if not apart.any():
-            return []
+            return found
         one, two = grains.body_mass[here], grains.body_mass[other]
         pull, carried, overlap, mass = (it[apart] for it in (bonds.back, carried, overlap, one * two / (one + two)))
-        found, at_most = [], carried + overlap * mass / seconds**2
+        at_most = carried + overlap * mass / seconds**2
         if (pull > at_most).any():
             k = int(np.argmax(pull / at_most))
             found.append(

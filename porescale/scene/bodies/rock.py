@@ -36,6 +36,9 @@ class Rock(Timed):
                 faults.append(Fault(name, value, "is of polygons", "m", repair="leave it out, or take another kind"))
             if self.kind != "discs" and value is None:
                 faults.append(Fault(name, None, "is missing", "m", "> 0", f"add it: {self.kind} need it"))
+        if self.strain is not None and (least := self.strain.least - self.strain.value(0.0)) <= -1.0:
+            problem, repair = "presses the sample to nothing", "write -0.02 for two per cent"
+            faults.append(Fault("strain", least, problem, "", "> -1", repair))
         if self.plates == "none" and self.strain is not None:
             faults.append(Fault("strain", None, "needs plates", repair='write plates = "x" or "y"'))
         return faults

@@ -6,6 +6,7 @@ import math
 import pytest
 
 from porescale.builders.build import build
+from porescale.builders.derive import derive
 from porescale.common.core.errors import Unstable
 from porescale.dem.measures.survey import max_overlap
 from tests.reference.scenes import column, dry, warned, water
@@ -81,3 +82,45 @@ def test_the_same_by_hertz():
     assert warned(hertz(0.94 * 3e4 * times), "too soft for the packing")
     model = build(hertz(1.06 * 3e4 * times))
     assert 0.01 < 0.5 * max_overlap(model.grains).share < 0.05
+
+
+GRAIN = {"x": 0.005, "y": 0.004, "diameter": 8e-4}
+FLOOR = {"chain": [[0.002, 0.001], [0.008, 0.001]], "thickness": 2e-4}
+LAW = {"stiffness": 1e5, "restitution": 0.5}
+
+
+def one(**sections):
+    """A grain in a box of its own."""
+    return dry(grains={"density": 2500, "grain": [GRAIN]}, contact=LAW, time__end=0.01, **sections)
+
+
+def test_a_displacement_that_leaps_is_said_to_need_many_steps():
+    def moved(within):
+        return one(control=[{"grain": 0, "x": {"displacement": [[0, 0], [within, 1e-3]]}}])
+
+    (line,) = warned(moved(1e-9), "times as many as contacts need")
+    assert "what moves at 1e+06 m/s" in line
+    assert not warned(moved(1e-2), "times as many as contacts need")
+
+
+def test_the_speed_to_expect_of_a_container_is_that_of_its_end_farthest_from_the_pivot():
+    def speed(pivot):
+        return derive(one(container=[FLOOR | {"pivot": pivot, "rotation": {"velocity": 100}}])).speed
+
+    assert speed([5.002, 0.001]) == pytest.approx(500)
+    assert speed([0.005, 0.001]) == pytest.approx(0.6)  # no less than its own length: as it was before
+
+
+def test_what_a_cell_presses_together_is_judged_by_its_rate_and_the_largest_grains():
+    sides = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
+    d = dry()
+
+    def cell(rate):
+        packing = {"left": 0, "bottom": 0, "width": d.domain.width, "height": d.domain.height, "diameter": 8e-4,
+                   "packing_fraction": 0.5, "settle": False}  # fmt: skip
+        own = {"gravity": [0, 0], "grains": {"density": 2500, "packing": packing}, "contact": LAW}
+        return dry(**{f"domain__{side}": word for side, word in sides.items()}, **own, cell={"rate_xy": rate})
+
+    assert derive(cell(-10.0)).speed == pytest.approx(10 * 1.2 * 8e-4, rel=0.2)
+    assert warned(cell(1e5), "contacts are too soft")
+    assert not warned(cell(1.0), "contacts are too soft")
