@@ -67,6 +67,8 @@ def measure(
     for path, key in ((csv, "--csv"), (openpiv, "--openpiv")):
         if path is not None:
             require_writable(path.parent, key)
+    if csv is not None and openpiv is not None and csv.resolve() == openpiv.resolve():
+        raise InputError(Fault("--openpiv", str(openpiv), "is the file of --csv, too", repair="give them two names"))
     folder = (
         out
         if out or ((csv or openpiv) and not (overlay or review))

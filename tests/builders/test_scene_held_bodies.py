@@ -223,6 +223,18 @@ def test_speed_and_sound_of_an_oscillation_are_judged():
     assert said[1][0].startswith("disc 0 swings at 50 Hz, by 1.3 rad while sound crosses the box")
 
 
+def test_a_rotation_faster_than_steps_is_judged():
+    def said(frequency):
+        disc = {**DISC, "turning": {"amplitude": 1.0, "frequency": frequency}}
+        return warned(box(disc=[disc]), "turns to and fro")
+
+    step = derive(box(disc=[DISC])).scales.step
+    assert said(0.04 / step) == []  # 0.25 rad a step
+    (line,) = said(100 / step)  # whole periods a step: every step sees the same spin
+    assert line.startswith("disc 0 turns to and fro at ")
+    assert ", by 628 rad of its oscillation a step: a step of" in line.replace("6.3e+02", "628")
+
+
 def test_a_body_that_is_moved_at_one_speed_does_not_swing():
     def said(way):
         grains = {

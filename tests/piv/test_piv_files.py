@@ -159,6 +159,10 @@ def test_masks_from_bitmaps_polygons_and_brightness(tmp_path):
     assert np.array_equal(segmented(255 - image, bright=False), segmented(image, bright=True))
     with pytest.raises(InputError, match="--polygon"):
         polygon("1,2 3,4", SIZE)
+    columns = SIZE[1]
+    with pytest.raises(InputError, match=r"--polygon = .*: lies outside of the picture"):  # metres, or another film's
+        polygon(f"{columns + 5},0 {columns + 9},0 {columns + 9},9", SIZE)
+    assert polygon(f"{columns - 1},0 {columns + 9},0 {columns + 9},9", SIZE).any()  # reaches in
 
 
 def test_a_vortex_is_found_where_it_is():
@@ -209,8 +213,9 @@ def test_a_synthetic_pair_is_the_same_for_the_same_seed_and_loses_what_it_says()
     assert np.abs(one.first[:, :-1].astype(int) - one.second[:, 1:]).max() <= 1  # rounding
     lost = pair(flow, replace(camera, lost=1.0), 3)
     assert np.corrcoef(lost.first[:, :-1].ravel(), lost.second[:, 1:].ravel())[0, 1] < 0.1
-    with pytest.raises(InputError, match="density"):
-        pair(flow, replace(camera, density=2.0))
+    for density in (2.0, 0.0):  # nothing to see
+        with pytest.raises(InputError, match="density"):
+            pair(flow, replace(camera, density=density))
 
 
 def test_any_number_of_threads_gives_the_same_bits():

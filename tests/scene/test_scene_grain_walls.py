@@ -136,6 +136,14 @@ def test_walls_that_move_are_not_for_wet_scenes():
     assert [line.partition(";")[0] for line in said] == ["domain.top: is for dry grains", "wall[0]: is for dry grains"]
 
 
+@pytest.mark.parametrize("kind", ["velocity", "pressure"])
+def test_a_side_that_lets_fluid_pass_is_not_for_dry_scenes(kind):
+    # It stood still as a wall, and its numbers had no effect, without a word.
+    numbers = {"velocity": [0.01, 0.0]} if kind == "velocity" else {"pressure": 10.0}
+    (line,) = lines(domain__left={"kind": kind, **numbers})
+    assert line.startswith(f"domain.left = '{kind}': is for a fluid, and there is none; write \"wall\"")
+
+
 def test_a_side_that_slides_for_the_fluid_is_said_to_stand_for_grains():
     # Grains lay still on it, dry, and were held back by it under water, without a word.
     belt = {"kind": "wall", "speed": 0.1}

@@ -105,6 +105,9 @@ def check_walls(scene: Scene) -> list[Fault]:
             along = f"[{side.speed:g}, 0]" if name in ("bottom", "top") else f"[0, {side.speed:g}]"
             problem, repair = "is felt by a fluid alone, and there is none", f"write velocity = {along}, for grains"
             faults.append(Fault(f"domain.{name}.speed", side.speed, problem, "m/s", repair=repair))
+        if side.boundary.passes and not scene.fluid:
+            problem, repair = "is for a fluid, and there is none", 'write "wall", which grains feel, or add [fluid]'
+            faults.append(Fault(f"domain.{name}", side.kind, problem, repair=repair))
     columns = [*SIDES, *(["gate"] if scene.gate else []), *(f"rectangle {k}" for k in range(len(scene.rectangle)))]
     faults += [
         Fault(f"wall[{k}].name", name, "is taken", repair="give each its own")

@@ -80,17 +80,14 @@ def check_needed(scene: Scene) -> list[Fault]:
 
 
 def without_effect(scene: Scene) -> list[str]:
-    """Warnings of keys that change nothing: friction where there are no grains, sides that let fluid in or out where
-    there is none, the ramp of a rectangle that stands, a control that neither prescribes nor records."""
+    """Warnings of keys that change nothing: friction where there are no grains, the ramp of a rectangle that stands,
+    a control that neither prescribes nor records."""
     given = {"gate": scene.gate.friction if scene.gate else 0.0}
     given |= {f"rectangle[{k}]": it.friction or 0.0 for k, it in enumerate(scene.rectangle)}
     made = []
     if scene.grains is None:
         made += [f"{key}.friction = {value:g} has no effect: there are no grains; leave it out"
                  for key, value in given.items() if value]  # fmt: skip
-    if scene.fluid is None:
-        made += [f'domain.{name}: "{it.kind}" has no effect: there is no fluid, and grains take it for a wall; write'
-                 f' {name} = "wall"' for name, it in scene.domain.sides.items() if it.open]  # fmt: skip
     made += [f"rectangle[{k}].ramp = {it.ramp:g} s has no effect: its velocity is 0; leave it out"
              for k, it in enumerate(scene.rectangle) if it.ramp and not any(it.velocity)]  # fmt: skip
     return made + [

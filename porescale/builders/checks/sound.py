@@ -53,6 +53,12 @@ def check_sound(scene: Scene, scales: Scales, warnings: list[str]) -> None:
                 f" ({turn / (2 * math.pi):.2g} acoustic wavelengths): pressures lag by as much; a step of"
                 f" {scales.step * 0.9 * SOUND_WARN / turn:.2g} s keeps it below {SOUND_WARN}"
             )
+    for what, rate in _turns(scene):
+        if rate * scales.step > SOUND_WARN:  # it makes no sound, but steps have to follow it
+            warnings.append(
+                f"{what} turns to and fro at {rate / (2 * math.pi):.3g} Hz, by {rate * scales.step:.2g} rad of its"
+                f" oscillation a step: a step of {0.9 * SOUND_WARN / rate:.2g} s keeps it below {SOUND_WARN}"
+            )
 
 
 def rates(scene: Scene, step: float) -> Iterator[tuple[str, float]]:
@@ -69,6 +75,16 @@ def rates(scene: Scene, step: float) -> Iterator[tuple[str, float]]:
     for name in scene.domain.sides:
         yield f"the velocity of the {name} side changes", inflow_rate(scene, name, step)
     yield "fluid.body_force changes", force_rate(scene, step)
+
+
+def _turns(scene: Scene) -> Iterator[tuple[str, float]]:
+    """Every rotation that changes with time, as `rates` has motions along x and y."""
+    for k, it in enumerate(scene.disc):
+        yield f"disc {k}", rate_of(it.turning)
+    for k, control in enumerate(scene.control):
+        turn = control.rotation
+        angle = None if _one_way(turn.displacement) else turn.displacement
+        yield f"what control {k} moves", max(map(rate_of, (turn.velocity, turn.force, angle)))
 
 
 def _one_way(course: TimeFunction | None) -> bool:

@@ -46,7 +46,8 @@ def _most(image: Picture) -> float:
 
 
 def polygon(text: str, size: tuple[int, int]) -> Flags:
-    """True within a polygon "x,y x,y x,y …", px, of a picture of ``size`` (rows, columns); InputError if none."""
+    """True within a polygon "x,y x,y x,y …", px, of a picture of ``size`` (rows, columns); InputError if it is none, or
+    holds no pixel."""
     try:
         corners = np.array([[float(part) for part in corner.split(",")] for corner in text.split()])
         if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
@@ -55,6 +56,9 @@ def polygon(text: str, size: tuple[int, int]) -> Flags:
         raise InputError(Fault("--polygon", text, "is no polygon", allowed='"x,y x,y x,y …" in px')) from error
     drawn = np.zeros(size, np.uint8)
     cv2.fillPoly(drawn, [np.rint(corners * 16).astype(np.int32)], (1,), cv2.LINE_8, 4)
+    if not drawn.any():
+        allowed = f"0 to {size[1] - 1} and 0 to {size[0] - 1} px"
+        raise InputError(Fault("--polygon", text, "lies outside of the picture", allowed=allowed))
     return drawn > 0
 
 

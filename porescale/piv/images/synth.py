@@ -43,7 +43,7 @@ class Camera:
         sides = [fault for it in size for fault in given.within("size", it, Range("px", ge=8, whole=True))]
         given.refuse(
             sides[:1],
-            given.within("density", self.density, Range(ge=0, le=1)),
+            given.within("density", self.density, Range(gt=0, le=1)),
             given.within("diameter", self.diameter, Range("px", ge=0.1, le=50)),
             given.within("noise", self.noise, Range(ge=0)),
             *(given.within(key, getattr(self, key), FINITE) for key in ("peak", "sheet", "background", "disc")),

@@ -28,7 +28,6 @@ def said(scene):
             "rectangle[0].ramp = 0.01 s",
             WATER_ALONE | {"gate": None, "rectangle": [BLOCK | {"ramp": 0.01, "velocity": [0.001, 0]}]},
         ),
-        (dry, {"domain__left": "pressure"}, 'domain.left: "pressure"', {"domain__left": "slip"}),
         (
             dry, GRAIN | {"control": [{"grain": 0}]}, "control[0]", GRAIN | {"control": [{"grain": 0, "record": True}]},
         ),

@@ -54,6 +54,12 @@ def columns(path):
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
+def test_two_tables_have_two_files(piv, tmp_path):
+    code, _, said = piv("measure", "a.png", "b.png", "--csv", "m.csv", "--openpiv", "./m.csv")
+    assert code == 2
+    assert said == ["--openpiv = 'm.csv': is the file of --csv, too; give them two names"]
+
+
 def test_a_pair_is_made_measured_and_compared(piv, tmp_path):
     code, _, _ = piv("synth", "discs", "--size", "256", "--peak", "3", "--out", "pair")
     assert code == 0
