@@ -217,6 +217,12 @@ def pile_report(scene: Scene, out: Report) -> None:
                 f"reservoir[{k}] reaches across the pile: what it keeps is the mean of both sides, whatever each of "
                 f"them has; end it at {at - 0.5 * spacing:g} m, or begin it at {at + 0.5 * spacing:g} m"
             )
+    for k, it in enumerate(scene.probe):
+        breadth = (it.width or scene.numerics.smoothing_ratio * spacing) + spacing
+        if it.y + 0.5 * (it.height or 0.0) > tip and abs(it.x - at) < (0.5 - WHOLE) * breadth:
+            out.warn(
+                f"probe[{k}] reaches across the pile: its pressure is that of both sides at once; move or narrow it"
+            )
     if buried <= 0.0:
         out.row("rows of ground beside it", 0.0)
         out.warn("the pile does not reach into the ground at the start: exit gradient () will be nan; lower pile.tip")

@@ -121,6 +121,16 @@ def test_a_reservoir_across_a_pile_is_said_to_keep_the_mean_of_both_sides():
         assert ("end it at 0.45 m, or begin it at 0.5 m" in said) == across
 
 
+def test_probes_across_a_pile_are_said_to_read_both_sides():
+    """One on a pile between 1.1 and 0.6 m of water read 2512 Pa where 4905 and 0 were, without a word."""
+    for place, across in ((0.475, 2), (0.5, 2), (0.35, 0), (0.6, 0)):  # the last two must fail
+        over, under = {"x": place, "y": 0.4}, {"x": place, "y": 0.1}  # below its tip there is one side alone
+        wide = {"x": place, "y": 0.4, "width": 0.1, "height": 0.1}
+        said = report(piled(0.6, 0.6, probe=[over, under, wide])).warnings
+        assert sum("of both sides at once" in text for text in said) == across
+        assert not any("probe[1]" in text for text in said)
+
+
 def test_an_exit_through_bare_ground_beside_a_pile_needs_five_rows():
     """Four under water: its second row, too, has no head to fit."""
 

@@ -55,3 +55,11 @@ def test_pores_full_to_far_above_the_open_water_are_warned_of(pond, said):
     given["water"] = {"column": [{"left": 0.5, "width": 0.5, "height": pond}]}
     found = report(validate(Scene, {**given, "soil": bank})).warnings
     assert sum("pores are full to 1 m" in text for text in found) == said
+
+
+@pytest.mark.parametrize(("lid", "height", "said"), [(True, 1.0, 1), (True, 0.5, 0), (False, 1.0, 0)])
+def test_probes_of_water_under_a_lid_that_it_fills_the_tank_to_are_warned_of(lid, height, said):
+    given = scene_as_dict(trials.column_scene(0.05, tank=(1.0, 1.0), column=(1.0, height)))
+    probed = given | {"tank": given["tank"] | {"lid": lid}, "probe": [{"x": 0.5, "y": 0.2}]}
+    assert sum("a lid does not pull" in text for text in report(validate(Scene, probed)).warnings) == said
+    assert not any("a lid does not pull" in text for text in report(validate(Scene, given)).warnings)  # no probe
