@@ -121,6 +121,15 @@ def test_a_reservoir_across_a_pile_is_said_to_keep_the_mean_of_both_sides():
         assert ("end it at 0.45 m, or begin it at 0.5 m" in said) == across
 
 
+def test_reservoirs_that_meet_with_other_levels_are_said_to_feed_each_other():
+    """One at 0.6 m let 115 kg/m into one at 0.4 m beside it in half a second, without a word."""
+    for change, said in (({}, 1), ({"level": 0.7}, 0), ({"left": 0.6}, 0), ({"pile": True}, 0)):  # the last must fail
+        pile = {} if change.pop("pile", False) else {"pile": None}
+        strips = [{"right": 0.475, "level": 0.7}, {"left": 0.475, "right": 1.0, "level": 0.6} | change]
+        given = piled(0.6, 0.6, reservoir=[{"left": 0.0, "bottom": 0.4} | it for it in strips], **pile)
+        assert sum("reservoirs meet" in text for text in report(given).warnings) == said
+
+
 def test_probes_across_a_pile_are_said_to_read_both_sides():
     """One on a pile between 1.1 and 0.6 m of water read 2512 Pa where 4905 and 0 were, without a word."""
     for place, across in ((0.475, 2), (0.5, 2), (0.35, 0), (0.6, 0)):  # the last two must fail
