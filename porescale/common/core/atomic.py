@@ -62,8 +62,8 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def write_text(path: Path, content: str) -> None:
-    """Write a small text file (UTF-8), whole or not at all."""
-    write_bytes(path, content.encode())
+    """Write a small text file, whole or not at all; UTF-8, what it cannot hold of names of files as \\udcff."""
+    write_bytes(path, content.encode(errors="backslashreplace"))
 
 
 def sync(path: Path) -> None:

@@ -123,7 +123,7 @@ def _entries(run: Run, precision: Precision) -> Iterator[tuple[str, bytes]]:
     about = meta(run, precision) | {"errors": errors}
     for name in about["tables"]:
         yield f"table {name}", _packed(compact(table(run, name)).encode())
-    yield "meta", _packed(compact(plain(about)).encode())
+    yield "meta", _packed(compact(plain(about)).encode(errors="backslashreplace"))
 
 
 def _largest(errors: dict[str, float], content: bytes) -> None:

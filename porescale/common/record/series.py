@@ -31,15 +31,17 @@ class Series:
         self._file.truncate(keep)
         self._file.seek(keep)
         self.length = keep
-        self.names: list[str] | None = read_names(self.path) if keep else None
+        self.names: list[str] | None = _names(self.path) if keep else None
 
     def append(self, row: dict[str, float]) -> None:
-        """Add one row; the first one of a file writes the names too.  ValueError when the names differ."""
+        """Add one row; the first one of a file writes the names too.  InputError when the names differ."""
         if self.names is None:
             self.names = list(row)
             self._write(_line(self.names))
         if list(row) != self.names:
-            raise ValueError(f"series row has {sorted(set(row) ^ set(self.names))} other than the rows before")
+            differing = ", ".join(repr(name[:40]) for name in sorted(set(row) ^ set(self.names))[:3]) or "their order"
+            problem = f"has other columns than the run ({differing})"
+            raise InputError(Fault("series", str(self.path), problem, repair="start the run anew"))
         self._write(_line([repr(_plain(value)) for value in row.values()]))
 
     def sync(self) -> None:
@@ -77,10 +79,14 @@ def _line(cells: list[str]) -> bytes:
     return text.getvalue().encode()
 
 
-def read_names(path: Path) -> list[str] | None:
-    """The columns' names, None when the file is empty."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return next(csv.reader(file), None)
+def _names(path: Path) -> list[str] | None:
+    """The columns' names, None when the file is empty; InputError when it is no table."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            return next(csv.reader(file), None)
+    except (UnicodeDecodeError, csv.Error):
+        problem = "is damaged (its first line has no names of columns)"
+        raise InputError(Fault("series", str(path), problem, repair="start the run anew")) from None
 
 
 def run_table(folder: Path, name: str) -> dict[str, AnyArray]:

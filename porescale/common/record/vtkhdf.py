@@ -258,6 +258,8 @@ def frames_of(path: Path) -> list[Frame]:
     """The frames of a file, in time.  OSError when it cannot be read, KeyError when it was not written by this
     module."""
     path = Path(path)
+    with open(path, "rb"):  # a folder, a lock: the system's own word, with the name, which h5py does not give
+        pass
     with h5py.File(path, "r") as file:
         steps, times = file["porescale/step"][...], file["VTKHDF/Steps/Values"][...]
         grid = _kind(file) == "grids"

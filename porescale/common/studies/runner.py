@@ -97,7 +97,10 @@ class Campaign:
         folder = self.place(point)
         card = read_card(folder) if (folder / CARD).exists() else {}
         lines = [line for line in done.said.splitlines() if line.strip() and not line.startswith("warning:")]
-        problem = "" if done.code == 0 or not lines else lines[-1]
+        silent = (
+            f"its process was ended by signal {-done.code}" if done.code < 0 else f"exit code {done.code}, no message"
+        )
+        problem = "" if done.code == 0 else (lines or [silent])[-1]
         return Ended(point, folder, CODES.get(done.code, "failed"), card, problem)
 
     def all(self, points: Sequence[Point], jobs: int | None, say: Callable[[str], object]) -> Iterator[Ended]:

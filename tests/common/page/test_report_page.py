@@ -1,7 +1,9 @@
 """The page of a run: its data are those of the files within the error that it states; a browser shows them."""
 
 import json
+import os
 import re
+import shutil
 import zlib
 from base64 import b64decode, b64encode
 from dataclasses import replace
@@ -140,6 +142,11 @@ def test_a_run_that_has_not_ended_is_not_held_against_what_is_expected_of_its_en
     running.card["outcome"] = "running"
     note = "What is expected is for the end of the run, which is running."
     assert meta(running)["verdicts"] == {"note": note, "rows": []}
+
+
+def test_the_page_of_a_run_whose_name_is_no_utf_8_is_written(folder, tmp_path):
+    named = shutil.copytree(folder, tmp_path / os.fsdecode(b"\xff"))
+    assert write_report(named, PROGRAM).exists()
 
 
 def test_the_page_of_a_run_that_ends_says_that_it_has(run, folder):

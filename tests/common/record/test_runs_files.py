@@ -107,9 +107,22 @@ def test_a_series_shorter_than_its_checkpoint_is_refused(tmp_path):
 def test_a_row_with_other_columns_is_refused(tmp_path):
     series = Series(tmp_path / "series.csv")
     series.append({"time (s)": 0.0})
-    with pytest.raises(ValueError, match="mass"):
+    with pytest.raises(InputError, match="mass"):
         series.append({"time (s)": 0.0, "mass (kg)": 1.0})
     series.close()
+
+
+@pytest.mark.parametrize("content", [b"\x82\xff" * 50, b"a,b\n" + b"1,2\n" * 24])
+def test_a_series_of_other_bytes_as_long_as_the_checkpoint_needs_is_refused(tmp_path, content):
+    (tmp_path / "series.csv").write_bytes(content)
+    with pytest.raises(InputError, match="start the run anew"):
+        Series(tmp_path / "series.csv", 100).append({"time (s)": 0.0})
+
+
+def test_a_card_spells_names_that_are_no_utf_8(tmp_path):
+    name = os.fsdecode(b"runs/\xff")
+    card.write_card(tmp_path, {"command": name})
+    assert json.loads((tmp_path / "card.json").read_bytes())["command"] == name
 
 
 def test_numbers_of_numpy_are_written_as_numbers(tmp_path):

@@ -169,6 +169,13 @@ def test_snapshots_after_the_checkpoint_are_forgotten(tmp_path, joined):
     assert snapshots.catalogue(tmp_path) == {}
 
 
+def test_a_folder_in_place_of_a_file_is_said_with_its_name(tmp_path):
+    (tmp_path / "fields.vtkhdf").mkdir()
+    with pytest.raises(IsADirectoryError) as caught:
+        snapshots.trim(tmp_path, 15)
+    assert str(caught.value.filename) == str(tmp_path / "fields.vtkhdf")
+
+
 def test_only_the_arrays_asked_for_are_read(folder):
     entry = snapshots.catalogue(folder)[20]
     assert list(snapshots.load(entry, 20, ("pressure",)).grids["fields"].cells) == ["pressure"]

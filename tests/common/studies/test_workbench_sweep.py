@@ -211,6 +211,12 @@ def test_a_refused_point_says_why(tmp_path):
     assert (ended.outcome, ended.problem) == ("refused", "decay.rate = 3: no")
 
 
+@pytest.mark.parametrize(("code", "said"), [(-9, "its process was ended by signal 9"), (1, "exit code 1, no message")])
+def test_a_point_whose_process_ended_without_a_word_says_how(tmp_path, code, said):
+    (ended,) = campaign(tmp_path, lambda words: (code, "")).all(varied(["decay.rate=1"]), 1, print)
+    assert (ended.outcome, ended.problem) == ("failed", said)
+
+
 def test_an_exception_among_points_stops_the_rest(tmp_path):
     called: list[list[str]] = []
 
