@@ -13,9 +13,11 @@ from tests.reference.folders import CASES
 
 
 @pytest.fixture
-def run(tmp_path, monkeypatch, capsys):
-    """Runs a command line of porescale in an empty folder: exit code, stdout, stderr."""
+def run(tmp_path, tmp_path_factory, monkeypatch, capsys):
+    """Runs a command line of porescale in an empty folder: exit code, stdout, stderr.  No run of this machine is known:
+    what `check` expects would change where another test's run ends between two calls."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
 
     def ran(*words, app=None):
         code = application.main(app or commands(), words)
