@@ -86,11 +86,15 @@ def _prescribed(grains: State, disc: int) -> bool:
         return True
     if disc < 0 or grains.drivers is None:
         return False
-    control, clumps, of_clump, number = grains.drivers.arrays.control, clumps_of(grains), 0, disc
+    control, clumps, body = grains.drivers.arrays.control, clumps_of(grains), -1
     if clumps is not None and len(row := np.flatnonzero(clumps.member == disc)):
-        of_clump, number = 1, int(np.searchsorted(clumps.start, row[0], "right")) - 1
-    own = (control[:, CLUMP] == of_clump) & (control[:, INDEX] == number) & (control[:, KIND] != PUSH)
-    return bool((own & (control[:, AXIS] < 2 + of_clump)).any())
+        body = int(np.searchsorted(clumps.start, row[0], "right")) - 1
+    free, alone = control[:, KIND] == PUSH, control[:, CLUMP] == 0
+    if body < 0:
+        own = alone & (control[:, INDEX] == disc) & (control[:, AXIS] < 2)
+    else:  # the rotation of a body moves its members
+        own = ~alone & (control[:, INDEX] == body)
+    return bool((own & ~free).any())
 
 
 def _check_travel(grains: State) -> None:

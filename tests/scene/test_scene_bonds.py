@@ -87,6 +87,8 @@ def test_bonds_made_on_the_way_leave_the_energy_budget_closed():
         assert series["bonds ()"] > 0
         assert series["elastic energy, normal (J/m)"] < 0
         residuals.append(abs(series["residual (J/m)"]) / series["turned over (J/m)"])
+    # The budget is of first order in the step: 0.76, 0.31, 0.14, 0.06 % with 8, 4, 2, 1 us. What bonds bring is 150 %
+    # of what is turned over, so 2 %, six times the first of these two, is a 75th of it.
     assert residuals[0] < 0.02
     assert residuals[1] < residuals[0] / 2  # falls with the step
 

@@ -170,7 +170,8 @@ def _warn(scene: Scene, mach: float, count: int, out: Report) -> None:
             "image walls stir water that rests: in a second they double pressures where they slip, and raise them by "
             '7 % where they stick; tank.wall_particles = "pressure" does not'
         )
-    # 8, 16, 32 rows under a lid, 0.3 m down: 3390, 3161, 3048 Pa of 2943 after 0.6 s, sound at 28 m/s; 3238 at 60 m/s
+    # 8, 16, 32 rows under a lid, 0.3 m down: 3390, 3161, 3048 Pa of 2943 after 0.6 s, sound at 28 m/s;
+    # with 16 and sound at 60 m/s 3238 (docs/theory/water.md, limits)
     elif scene.probe and scene.gravity > 0.0 and not scene.face and fills(scene, count):
         more = scene.water.density * scene.gravity * scene.numerics.spacing
         out.warn(

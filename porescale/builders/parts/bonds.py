@@ -134,14 +134,16 @@ class BondsPart(Part):
         if len(bad):
             problem = f"there are {grains.discs.count} discs and corners, and {segments} segments"
             raise InputError(Fault(f"{key}.known[{bad[0]}]", None, problem, repair="number them from 0"))
-        held = [(*sorted(row[:2].tolist()), 0) if row[2] == 0 else tuple(row.tolist()) for row in ends]
+        held: set[tuple[int, int, int]] = set()
         for k, (here, other, sided) in enumerate(ends.tolist()):
+            pair = (here, other, sided) if sided else (min(here, other), max(here, other), 0)
             two = int(grains.segments.ends[other, 0]) if sided and grains.segments else other
             if self.bodies.kind[here] == self.bodies.kind[two] and self.bodies.number[here] == self.bodies.number[two]:
                 problem, repair = "bonds a body to itself", "name discs, corners or segments of two bodies"
-            elif held[k] in held[:k]:
+            elif pair in held:
                 problem, repair = "bonds what an earlier row bonds", "give each bond once"
             else:
+                held.add(pair)
                 continue
             raise InputError(Fault(f"{key}.known[{k}]", None, problem, repair=repair))
 

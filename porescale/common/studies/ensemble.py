@@ -109,8 +109,8 @@ def repeated(
     """Every point as often as is asked, on the same seeds, counted from the scene's own; InputError where it cannot."""
     from porescale.common.schema.sections import load
 
-    key, values, _ = (asked.over or "").partition("=")
-    if values and any(text.partition("=")[0] == key.strip() for text in settings):
+    key, equals, _ = (asked.over or "").partition("=")
+    if equals and any(text.partition("=")[0] == key.strip() for text in settings):
         problem = f"is set by every repeat, too, as {asked.words[1]} says"
         raise InputError(Fault(key.strip(), None, problem, repair="leave one out", file="--set"))
     made: list[Point] = []
