@@ -8,7 +8,9 @@ at : "end", "max", "min", a time in s (interpolated), or a table with first_belo
     with quantile, what that share of the rows does not exceed; with mean_from, max_from, rms_from, period_from,
     change_from the mean, the largest value, the rms about the mean, the mean period (s) about the mean, the last value
     less the first from a time on.
-minus : another column to take away;  where : {column: value} of the rows to look at, at the table's last time.
+minus : another column to take away;  where : {column: value} of the rows to look at, at the table's last time;
+integral : true for the integral of the column over time up to each row, by straight lines between rows: the volume that
+a discharge has passed.
 """
 
 import sys
@@ -45,6 +47,8 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
         for name, value in row["where"].items():
             meant &= columns[name] == value
         time, values = time[meant], values[meant]
+    if row.get("integral"):
+        values = np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time)))
     if isinstance(at, Mapping):
         return _found(time, values, at)
     if at == "end":
@@ -111,6 +115,10 @@ def wrong(row: Mapping[str, Any]) -> str:
             return f"{key} is not text"
     if not isinstance(row.get("where", {}), Mapping):
         return "where is not a table"
+    if not isinstance(row.get("integral", False), bool):
+        return "integral is neither true nor false"
+    if row.get("integral") and "where" in row:
+        return "integral is over time, and where leaves rows of one time"
     for key in ("value", "tolerance"):
         if key in row and not _is_number(row[key]):
             return f"{key} is not a number"

@@ -87,6 +87,7 @@ class Quantity(Section):
     file: str = "series"
     minus: str | None = None
     where: dict[str, Any] | None = None
+    integral: bool = False
     along: str = ""
     feature: str = ""
     scale: float = quantity("", gt=0, help="value that an error is a share of")
@@ -98,6 +99,8 @@ class Quantity(Section):
             raise Refused(Fault("column", self.column or None, "or feature: one of them says what is measured"))
         if self.exact is not None and (self.is_curve or self.feature):
             raise Refused(Fault("exact", self.exact, "is a number, what is measured a curve or field"))
+        if self.integral and (self.is_curve or self.feature):
+            raise Refused(Fault("integral", True, "is of a column over time, what is measured a curve or field"))
         if (self.is_curve or self.feature) and not (self.at == "end" or isinstance(self.at, float)):
             raise Refused(Fault("at", str(self.at), "is not when to look at a curve or field", "s", 'a time or "end"'))
         if problem := wrong(self.row()):
@@ -112,7 +115,8 @@ class Quantity(Section):
     def row(self) -> dict[str, Any]:
         """The table that `measured` takes for this quantity."""
         made = {"name": self.name, "unit": self.unit, "column": self.column, "at": self.at, "file": self.file}
-        return made | {key: value for key in ("minus", "where", "along") if (value := getattr(self, key)) is not None}
+        return made | {key: value for key in ("minus", "where", "along", "integral")
+                       if (value := getattr(self, key)) not in (None, False)}  # fmt: skip
 
 
 class Plan(Section):

@@ -104,6 +104,8 @@ def test_a_plan_has_a_run_for_every_repeat_and_shares_what_two_knobs_have_in_com
         ('name = "surface"', 'name = "end"', "have one name twice"),
         ('column = "height at x = *"', 'column = "height at x = *"\nexact = 1', "is a number, what is measured a"),
         ('column = "height at x = *"', 'column = "height at x = *"\nat = "max"', "is not when to look"),
+        ('column = "height at x = *"', 'column = "height at x = *"\nintegral = true', "of a column over time"),
+        ('column = "y (m)"', 'column = "y (m)"\nintegral = true\nwhere = { "y (m)" = 1 }', "rows of one time"),
         ("scale = 2.0", "scale = 0", "out of range"),
         ("[over]", "[ower]", "unknown"),
     ],
