@@ -288,7 +288,7 @@ def rising(spacing: float, seconds: float) -> tuple[float, float, float]:
 @VALIDATIONS.row(
     "continuum.rising_bubble",
     source="Hysing et al. 2009, Int. J. Numer. Methods Fluids 60, 1259, test case 1",
-    because="interface and walls are smoothed over h = RATIO/10 of the radius, (h/R)² = 1.8 %; the disc of particles "
+    because="interface and walls are smoothed over h = RATIO/10 of the radius, (h/R)² = 1.9 %; the disc of particles "
     "is 0.6 % larger than the circle",
     tolerance=(RATIO / 10) ** 2 + 0.006,
     slow=True,
