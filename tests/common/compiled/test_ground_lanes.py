@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from porescale.common.compiled.jit import kernel
+from porescale.common.compiled.jit import compiler, kernel
 from porescale.common.compiled.simd import (
     COLUMNS,
     EIGHT,
@@ -134,3 +134,8 @@ def test_lanes_are_rounded_to_what_the_line_holds():
     line, values = np.zeros(LANES + 2, np.float32), np.array([1 / 3, 2 / 3, 1e-50, -0.1])
     rounded(line, values)
     np.testing.assert_array_equal(line, [0.0, *values.astype(np.float32), 0.0])
+
+
+def test_kernels_take_the_widest_vectors_of_the_processor():
+    features = str(compiler().cpu_target.target_context.codegen().magic_tuple()[2])
+    assert ("+avx512f" in features) == ("-prefer-256-bit" in features)
