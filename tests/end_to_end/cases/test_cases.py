@@ -133,9 +133,6 @@ def test_numbers_are_read_from_the_series_as_stated():
     assert at({"max_from": 1.0}) == 6.0
     assert at({"change_from": 1.0}) == -2.0
     assert at({"period_from": 0.0}) == np.inf  # it does not swing
-    passed = {"name": "y", "column": "y (m)", "integral": True}
-    assert measured(columns, {**passed, "at": "end"}) == 15.0  # 7 + 4.5 + 3.5
-    assert measured(columns, {**passed, "at": {"first_above": 11.5}}) == 2.0
     columns |= {"z (m)": np.array([-1.0, 1.0, -1.0, 1.0])}  # rises through its mean at 0.5 s and 2.5 s
     assert measured(columns, {"column": "z (m)", "at": {"period_from": 0.0}}) == 2.0
     assert np.isnan(at(3.5))
