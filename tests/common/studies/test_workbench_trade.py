@@ -20,7 +20,7 @@ from porescale.common.studies import trade_files
 from porescale.common.studies.ensemble import Repeats
 from porescale.common.studies.front import FrontPoint, Here, begun, choose, pace_of, read_front
 from porescale.common.studies.parameter_table import Point, repeats
-from porescale.common.studies.quantities import curve, measured
+from porescale.common.studies.quantities import curve
 from porescale.common.studies.runner import Ended
 from porescale.common.studies.trade import Errors, Traded, distance, front
 from porescale.common.studies.trade_plan import Plan, read_plan
@@ -373,24 +373,6 @@ def test_a_column_that_no_run_has_is_said_with_those_that_there_are(tmp_path):
         with pytest.raises(InputError, match=rf"^quantity '\w+': column = '.*': is not in {file}\.csv") as caught:
             errors.trade("k", "1", Point("1 2", ()), [ended("1 2")])
         assert ("(allowed: time (s), " in str(caught.value)) == (file != "x")
-
-
-def test_a_number_is_read_as_the_row_says():
-    columns = {"time (s)": np.array([0.0, 1.0, 2.0, 3.0]), "y (m)": np.array([8.0, 6.0, 3.0, 4.0])}
-    row = {"column": "y (m)", "at": 0.5}
-    assert measured(columns, row) == 7.0
-    passed = {**row, "integral": True}
-    assert measured(columns, {**passed, "at": "end"}) == 15.0  # 7 + 4.5 + 3.5
-    assert measured(columns, {**passed, "at": {"first_above": 11.5}}) == 2.0
-    for at in ("begin", {"share_of": "rise", "first_below": 1}, {}):
-        with pytest.raises(ValueError, match=r"at|share_of"):
-            measured(columns, {**row, "at": at})
-
-
-def test_the_last_row_stands_for_half_a_row_more() -> None:
-    columns = {"time (s)": np.array([0.0, 0.2, 0.399]), "front (m)": np.array([0.0, 2.0, 3.0])}
-    assert measured(columns, {"column": "front (m)", "at": 0.4}) == 3.0  # a step that does not divide the end
-    assert math.isnan(measured(columns, {"column": "front (m)", "at": 0.5}))  # over 0.0995 s, half a row
 
 
 def test_errors_that_the_pages_ask_for_can_be_had():
