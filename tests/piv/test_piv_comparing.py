@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from porescale.cli.main import commands
 from porescale.common.cli.application import main
+from porescale.common.core.errors import PorescaleWarning
 from porescale.common.record import snapshots
 from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.common.record.open_run import Run
@@ -46,6 +47,16 @@ def test_noise_of_a_measured_field_is_no_vortex_to_compare():
     assert (found.reference_vortices, found.other_vortices) == ([], [])
     sure = replace(measured, uncertainty=0 * measured.uncertainty)  # the check that must fail: noise taken for motion
     assert compare(exact(made, 16, 8), sure).other_vortices != []
+
+
+def test_fields_that_share_little_are_said_to():
+    whole = exact(pair(flows.uniform(2.0, 1.0), Camera((256, 256)), 0), 16, 8)
+    assert compare(whole, whole).shared == 1.0
+    twice = replace(whole, x=2 * whole.x, y=2 * whole.y)  # as with a scale that is twice too large
+    for one, other in ((whole, twice), (twice, whole)):
+        with pytest.warns(PorescaleWarning, match="% of a field is compared"):
+            found = compare(one, other)
+        assert 0.2 < found.shared < 0.3  # a quarter, but for whole points
 
 
 def test_a_grain_that_flies_would_spoil_the_surface(monkeypatch):  # the twin of the row that must fail

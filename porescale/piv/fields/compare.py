@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RegularGridInterpolator
 
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import Fault, InputError, warn
 from porescale.common.core.ranges import Range
 from porescale.common.core.types import Floats
 from porescale.piv import given
@@ -19,13 +19,16 @@ ALIGNED = 30.0
 """Degrees between two directions that count as one."""
 SLOW = 0.05
 """Share of the rms speed below which a vector has no direction to compare."""
+HALF = 0.5
+"""Share of a field; less of it compared is warned of: its scale, place or region may be wrong."""
 
 
 @dataclass(frozen=True)
 class Comparison:
     """How ``other`` differs from ``reference``, on the reference's grid over the fluid of both.
 
-    points : compared;  speed : rms of the reference, its unit;  rms, largest : of the difference, over that speed;
+    points : compared;  shared : what share of a field they are, of the one of which less is compared;
+    speed : rms of the reference, its unit;  rms, largest : of the difference, over that speed;
     bias_u, bias_v : mean difference over it;  direction : mean cosine of the angle between the two, where neither is
     slow;  aligned : share of those that are within ALIGNED degrees;  correlation : of both components together;
     surface : of the piles, None where one has none;  surfaces : both;  reference_vortices, other_vortices, pairs : by
@@ -33,6 +36,7 @@ class Comparison:
     """
 
     points: int
+    shared: float
     speed: float
     rms: float
     largest: float
@@ -58,7 +62,18 @@ class Comparison:
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able: the numbers, and each vortex with its partner."""
-        names = ("points", "speed", "rms", "largest", "bias_u", "bias_v", "direction", "aligned", "correlation")
+        names = (
+            "points",
+            "shared",
+            "speed",
+            "rms",
+            "largest",
+            "bias_u",
+            "bias_v",
+            "direction",
+            "aligned",
+            "correlation",
+        )
         partners = {id(a): b for a, b in self.pairs}
         matched_others = {id(b) for _, b in self.pairs}
         rows = [_row(a, partners.get(id(a))) for a in self.reference_vortices]
@@ -89,7 +104,8 @@ def compare(
     within, factor : distance (None: the larger radius) and factor in circulation up to which vortices of one sign
     match;  surfaces : of the piles; what a field has solid stands for one that is None;  error : standard deviation of
     a component of fields that state no uncertainty, whose vortices are not looked for without it, with a
-    PorescaleWarning.  InputError where the fields share no fluid, or one is in pixels and the other in metres.
+    PorescaleWarning.  Another one where less than HALF of a field is compared.  InputError where the fields share no
+    fluid, or one is in pixels and the other in metres.
     """
     repair = "give fields of piv.measure, or of field_of_run"
     for key, field in (("reference", reference), ("other", other)):
@@ -102,9 +118,12 @@ def compare(
         repair = "give both a scale, or none"
         raise InputError(Fault("fields", None, "one has y up (metres), the other y down (pixels)", repair=repair))
     u, v = _onto(other, other.u, reference), _onto(other, other.v, reference)
-    common = ~reference.solid & np.isfinite(u) & np.isfinite(v) & np.isfinite(reference.u) & np.isfinite(reference.v)
+    common = _known(reference) & np.isfinite(u) & np.isfinite(v)
     if not common.any():
         raise InputError(Fault("fields", None, "share no point of the fluid", repair="check scale and region"))
+    shared = min(float(common.sum()) / _known(reference).sum(), _inside(other, reference))
+    if shared < HALF:
+        warn(f"{100 * shared:.2g} % of a field is compared, the rest lies outside of the other: check scale and region")
     du, dv = np.where(common, u - reference.u, np.nan), np.where(common, v - reference.v, np.nan)
     speed = float(np.sqrt(np.mean(reference.u[common] ** 2 + reference.v[common] ** 2)))
     if speed == 0:
@@ -118,6 +137,7 @@ def compare(
     piles = None if tops[0] is None or tops[1] is None else (tops[0], tops[1])
     return Comparison(
         points=int(common.sum()),
+        shared=shared,
         speed=speed,
         rms=float(np.sqrt(np.mean(size**2))) / speed,
         largest=float(size.max()) / speed,
@@ -134,6 +154,19 @@ def compare(
         surface=None if piles is None else difference(*piles),
         surfaces=piles,
     )
+
+
+def _known(field: Field) -> NDArray[np.bool_]:
+    """Where a field has a velocity of the fluid, (ny, nx)."""
+    return np.asarray(~field.solid & np.isfinite(field.u) & np.isfinite(field.v))
+
+
+def _inside(field: Field, frame: Field) -> float:
+    """Share of the points of ``field`` that lie between the outermost ones of ``frame``; 1 without any."""
+    x = (field.x >= frame.x.min()) & (field.x <= frame.x.max())
+    y = (field.y >= frame.y.min()) & (field.y <= frame.y.max())
+    known = _known(field)
+    return float(known[np.ix_(y, x)].sum() / known.sum()) if known.any() else 1.0
 
 
 def _onto(field: Field, values: Floats, target: Field) -> Floats:
