@@ -151,7 +151,7 @@ def test_it_is_said_which_moments_are_compared_and_none_beyond_the_run_is(tmp_pa
     assert out.startswith(f"{tmp_path / 'a'} at 0.1 s, {tmp_path / 'b'} at 0.1 s\n")
     code, out, err = told("--time", "0.5")
     assert (code, out) == (2, "")
-    assert err == f"--time = 0.5 s: is beyond what {tmp_path / 'a'} has (allowed: 0 to 0.1 s)\n"
+    assert err == f"time = 0.5 s: is beyond what {tmp_path / 'a'} has (allowed: 0 to 0.1 s)\n"
 
 
 def test_a_comparison_has_few_numbers_along_its_axes_and_a_unit_at_its_colours(tmp_path, monkeypatch):

@@ -53,7 +53,7 @@ def _number(times: Floats, time: float | None, folder: Path) -> int:
     nearest = int(np.abs(times - time).argmin())
     if len(times) > 1 and abs(times[nearest] - time) > float(np.diff(times).max()):
         where = f"{times[0]:g} to {times[-1]:g}"
-        raise InputError(Fault("--time", time, f"is beyond what {folder} has", "s", where))
+        raise InputError(Fault("time", time, f"is beyond what {folder} has", "s", where))
     return nearest
 
 
