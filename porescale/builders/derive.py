@@ -12,7 +12,7 @@ from porescale.builders.checks.contact import angles_for_friction, material_doub
 from porescale.builders.checks.discs_alone import left_out
 from porescale.builders.checks.frame_places import check_frames, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
-from porescale.builders.checks.needed import without_effect
+from porescale.builders.checks.needed import in_solids, without_effect
 from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
 from porescale.builders.checks.packing import beside_the_bed, check_compressed, too_soft_for_weight, unused_spread
 from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
@@ -142,7 +142,7 @@ def derive(scene: Scene) -> Derived:
             None, [thin_for(frames, speed, mean_mass * densities_of_bodies(scene)[-1] / scene.grains.density, law)]
         )
     warnings += strays(scene.domain, scene.time.end, frames)
-    warnings += [*unused_spread(scene), *without_effect(scene)]
+    warnings += [*unused_spread(scene), *without_effect(scene), *in_solids(scene)]
     variation = 0.0
     if scales:
         doubts = too_few_cells(frames, scales.spacing), too_light(frames, scales.spacing, scales.density)

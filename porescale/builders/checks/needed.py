@@ -1,5 +1,7 @@
 """Sections that need others, keys without effect for want of them, and what must lie in the box."""
 
+import math
+
 from porescale.builders.checks.combinations import (
     check_bonds,
     check_cell,
@@ -95,6 +97,32 @@ def without_effect(scene: Scene) -> list[str]:
         " or give record = true"
         for k, it in enumerate(scene.control)
         if not it.record and it.x.free and it.y.free and it.rotation.free
+    ]
+
+
+def in_solids(scene: Scene) -> list[str]:
+    """Warnings of points of [[probe]] and [[flux]] that a solid covers for the whole run: the pressure there is no
+    number, and no fluid passes."""
+    if scene.fluid is None:
+        return []
+    discs = [(f"disc[{n}]", (it.x, it.y), 0.5 * it.diameter) for n, it in enumerate(scene.disc)
+             if not it.timed and not any(it.velocity)]  # fmt: skip
+    boxes = [(f"rectangle[{n}]", it.lower, it.upper) for n, it in enumerate(scene.rectangle) if not any(it.velocity)]
+
+    def solid(*points: tuple[float, float]) -> str | None:
+        """The first solid that covers all ``points``: both kinds are convex, so it covers what lies between."""
+        around = [name for name, at, radius in discs if all(math.dist(at, it) < radius for it in points)]
+        around += [name for name, (left, bottom), (right, top) in boxes
+                   if all(left < x < right and bottom < y < top for x, y in points)]  # fmt: skip
+        return around[0] if around else None
+
+    probes = [solid(*(it.corners or [(it.x, it.y)])) for it in scene.probe]
+    fluxes = [solid(it.start, it.end) for it in scene.flux]
+    return [
+        f"{key}[{k}] lies in {name}, where no fluid is: {what}; move it out"
+        for key, what, found in (("probe", "its pressure is nan", probes), ("flux", "nothing passes", fluxes))
+        for k, name in enumerate(found)
+        if name
     ]
 
 

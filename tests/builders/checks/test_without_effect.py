@@ -3,7 +3,7 @@
 import pytest
 
 from porescale.builders.derive import derive
-from tests.reference.scenes import column, dry, grain
+from tests.reference.scenes import column, dry, grain, water
 
 WATER_ALONE = {"grains": None, "contact": None, "coarse_graining": None}
 GRAIN = {"gate": None, "grains__packing": None, "grains__density": 2500, "grains__grain": [grain(0.002, 0.002)]}
@@ -41,3 +41,16 @@ def test_a_key_that_changes_nothing_is_said(make, nothing, line, something):
     (found,) = said(make(**nothing))
     assert found.startswith(f"{line} has no effect")
     assert said(make(**something)) == []
+
+
+def test_probes_and_sections_in_solids_are_said():
+    held = {"x": 0.004, "y": 0.004, "diameter": 0.002}
+    inside = {"probe": [{"x": 0.004, "y": 0.0045}], "flux": [{"start": [0.0035, 0.004], "end": [0.0045, 0.004]}]}
+    across = {"probe": [{"x": 0.004, "y": 0.006}], "flux": [{"start": [0.004, 0.0], "end": [0.004, 0.008]}]}
+    found = [line for line in derive(water(disc=[held], **inside)).warnings if "where no fluid is" in line]
+    assert [line.split(" lies")[0] for line in found] == ["probe[0]", "flux[0]"]
+    for scene in (water(disc=[held], **across), water(disc=[held | {"velocity": [0.001, 0.0]}], **inside)):
+        assert not any("where no fluid is" in line for line in derive(scene).warnings)
+    block = {"lower": [0.003, 0.003], "upper": [0.005, 0.005]}
+    found = [line for line in derive(water(rectangle=[block], **inside)).warnings if "where no fluid is" in line]
+    assert len(found) == 2
