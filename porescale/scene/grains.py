@@ -9,6 +9,9 @@ from porescale.scene.circles import Circles, with_circles
 from porescale.scene.packing import Packing
 from porescale.scene.ranges import DENSITY, LENGTH, PLACE, SPEED, SPIN
 
+DEEPEST = 0.1
+"""Overlap over the smaller diameter in which grains placed by hand may start at most."""
+
 
 class Grain(Section):
     """One grain, placed by hand."""
@@ -30,7 +33,11 @@ class Grains(Section):
     )
     packing: Packing | None = None
     overlap: float = quantity(
-        "", 1e-3, ge=0, le=0.1, help="overlap over diameter up to which grains placed by hand may start (circles: 0.02)"
+        "",
+        1e-3,
+        ge=0,
+        le=DEEPEST,
+        help="overlap over diameter up to which grains placed by hand may start (circles: 0.02)",
     )
     grain: tuple[Grain, ...] = ()
     circles: Circles | None = None

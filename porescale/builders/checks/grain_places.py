@@ -1,5 +1,7 @@
 """Where a scene puts its grains: inside the box, clear of each other and of the gate, or an error naming it."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +20,7 @@ from porescale.dem.grains import SKIN
 from porescale.dem.prepare.settle import Pile
 from porescale.scene.bodies.gate import Gate
 from porescale.scene.domain import Domain
+from porescale.scene.grains import DEEPEST
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
 
@@ -242,7 +245,10 @@ def _check_overlap(x: Floats, r: Floats, scene: Scene, names: list[str], packed:
         return
     i, j, depth = found
     other = _plain(names[j - packed]) if j >= packed else "a grain of the packing"
-    faults.append(Fault(names[i - packed], None, f"overlaps {other} by {depth:.3g} m", repair="move one of them"))
+    share = math.ceil(1e3 * depth / (2 * min(r[i], r[j]))) / 1e3  # up to three digits
+    pressed = f", or raise grains.overlap to {share:g}" if scene.grains and share <= DEEPEST else ""
+    repair = f"move one of them{pressed}"
+    faults.append(Fault(names[i - packed], None, f"overlaps {other} by {depth:.3g} m", repair=repair))
 
 
 def _touch(scene: Scene) -> float:
