@@ -44,8 +44,9 @@ from porescale.common.compiled.turns import TURNS
 llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
 
 # LLVM uses half of the 512 bits of a vector on these processors, which once slowed their clock down.  All of it is
-# faster: 1.15 and 1.1 times for fluid that lies in the cache (512² cells, float32 and float64), 1.02 to 1.1 times with
-# grains in it, and as fast for all else (Xeon of 2024, one thread, in turns).  Bits do not depend on it.
+# 1.1 times as fast for fluid that lies in the cache (512² cells, either precision), 1.01 to 1.11 times with grains in
+# it, 0.93 to 0.95 times for the contact steps of a thousand grains, and as fast for all else (Xeon of 2024, in turns,
+# 2026-12-01).  Bits do not depend on it.
 if vars(config)["CPU_FEATURES"] is None and "+avx512f" in get_host_cpu_features():
     vars(config)["CPU_FEATURES"] = f"{get_host_cpu_features()},-prefer-256-bit"
     assert cpu_target.target_context  # made with these features, before variables of numba's might be read anew
