@@ -49,7 +49,7 @@ llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
 # 2026-12-01).  Bits do not depend on it.
 if vars(config)["CPU_FEATURES"] is None and "+avx512f" in get_host_cpu_features():
     vars(config)["CPU_FEATURES"] = f"{get_host_cpu_features()},-prefer-256-bit"
-    assert cpu_target.target_context  # made with these features, before variables of numba's might be read anew
+    cpu_target.target_context.codegen()  # made with these features, before variables of numba's might be read anew
 
 # `disjoint` of jit.py: numba has this flag for what it compiles, and gives it no name among the options.
 CPUTargetOptions.noalias = CPUTargetOptions.Mapping("noalias")

@@ -105,7 +105,7 @@ def _draw(axes: Any, one: Ensemble, curves: Sequence[tuple[Floats, Floats]], col
 def _allowed(axes: Any, row: Mapping[str, Any]) -> None:
     """What a row allows, where it is at a time, or the time at which a level is passed."""
     at = row.get("at")
-    if not {"value", "tolerance"} <= row.keys() or "minus" in row or "where" in row:
+    if not {"value", "tolerance"} <= row.keys() or row.keys() & {"minus", "where", "integral"}:
         return
     style = {"fmt": "none", "ecolor": "0.25", "capsize": 3, "elinewidth": 1.0, "zorder": 5, "label": "expected.toml"}
     if isinstance(at, int | float):
