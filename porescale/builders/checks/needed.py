@@ -102,10 +102,10 @@ def without_effect(scene: Scene) -> list[str]:
 
 def in_solids(scene: Scene) -> list[str]:
     """Warnings of points of [[probe]] and [[flux]] that a solid covers for the whole run: the pressure there is no
-    number, and no fluid passes."""
+    number, and no fluid passes.  Points on its surface are none."""
     if scene.fluid is None:
         return []
-    discs = [(f"disc[{n}]", (it.x, it.y), 0.5 * it.diameter) for n, it in enumerate(scene.disc)
+    discs = [(f"disc[{n}]", (it.x, it.y), 0.5 * it.diameter * (1 - EDGE)) for n, it in enumerate(scene.disc)
              if not it.timed and not any(it.velocity)]  # fmt: skip
     boxes = [(f"rectangle[{n}]", it.lower, it.upper) for n, it in enumerate(scene.rectangle) if not any(it.velocity)]
 

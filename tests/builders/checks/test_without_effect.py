@@ -1,5 +1,6 @@
 """Keys that change nothing are said before a run, and their twins that change something are not."""
 
+import numpy as np
 import pytest
 
 from porescale.builders.derive import derive
@@ -49,7 +50,12 @@ def test_probes_and_sections_in_solids_are_said():
     across = {"probe": [{"x": 0.004, "y": 0.006}], "flux": [{"start": [0.004, 0.0], "end": [0.004, 0.008]}]}
     found = [line for line in derive(water(disc=[held], **inside)).warnings if "where no fluid is" in line]
     assert [line.split(" lies")[0] for line in found] == ["probe[0]", "flux[0]"]
-    for scene in (water(disc=[held], **across), water(disc=[held | {"velocity": [0.001, 0.0]}], **inside)):
+    rim = {"probe": [{"x": 0.004 + 0.001 * np.cos(a), "y": 0.004 + 0.001 * np.sin(a)} for a in np.arange(7.0)]}
+    for scene in (
+        water(disc=[held], **across),
+        water(disc=[held], **rim),
+        water(disc=[held | {"velocity": [0.001, 0.0]}], **inside),
+    ):
         assert not any("where no fluid is" in line for line in derive(scene).warnings)
     block = {"lower": [0.003, 0.003], "upper": [0.005, 0.005]}
     found = [line for line in derive(water(rectangle=[block], **inside)).warnings if "where no fluid is" in line]
