@@ -1,6 +1,7 @@
 """The scene of a continuum: all its sections.  SI numbers or texts with units; an absent section builds nothing."""
 
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -113,6 +114,18 @@ class Scene(SceneBase):
             taken |= body.holds(points)
         return ~taken
 
+    def meeting_strips(self) -> list[str]:
+        """Warnings of reservoirs that meet with other levels and no pile between them."""
+        spacing = self.numerics.spacing
+        at = self.pile.column(spacing) if self.pile is not None else None
+        return [
+            f"strips of reservoirs meet at {other.left:g} m with other levels: the higher feeds the lower as long as "
+            "the run lasts; part them, or make them one"
+            for one, other in pairwise(sorted(self.reservoir, key=lambda it: it.left))
+            if other.left - one.right < 0.5 * spacing and one.table != other.table
+            and not (at is not None and one.left < at < other.right)
+        ]  # fmt: skip
+
     @pydantic.model_validator(mode="after")
     def _tension(self) -> "Scene":
         """Says what water does under negative pressure where that is left out.
@@ -164,7 +177,8 @@ class Scene(SceneBase):
         if self.air is not None and self.water.viscosity == 0.0:  # drag on air is that on water, times μ_a/μ_w
             problem = "leaves the drag on air without a measure: air passes soil as much easier as it is less viscous"
             faults.append(Fault("water.viscosity", 0.0, problem, "Pa s", "> 0"))
-        for index, column in enumerate(self.water.column):
+        refused = self.soil is not None and self.soil.suction is not None  # as a whole, by suction
+        for index, column in enumerate(() if refused else self.water.column):
             key = f"water.column[{index}]"
             slack = WHOLE * spacing
             if column.left + column.width > tank.width + slack:
@@ -348,8 +362,8 @@ class Scene(SceneBase):
         better = dividing(list(lengths.values()), spacing, WHOLE) if uneven else None
         for key in uneven:
             whole = spacings(lengths[key], spacing)
-            another = f"a spacing of {better or lengths[key] / whole:.9g} m"
+            another = f", or with a spacing of {better:.9g} m all lengths" if better else ""
             problem = f"is {shares[key]:.6g} spacings of {spacing:.6g} m, not whole ones"
-            repair = f"{whole * spacing:.9g} m would be, or with {another}{' all lengths' if better else ''}"
+            repair = f"{whole * spacing:.9g} m would be{another}"
             faults.append(Fault(key, lengths[key], problem, "m", repair=repair))
         return faults

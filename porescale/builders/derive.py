@@ -234,7 +234,7 @@ def _uneven(lengths: dict[str, float], spacing: float) -> list[Fault]:
     return [
         Fault(key, it, f"is {it / spacing:.6g} cells of {spacing:.6g} m, not a whole number", "m",
               repair=f"a spacing of {better:.9g} m divides {'them all' if len(uneven) > 1 else 'it and the rest'}"
-              if better else f"a spacing of {it / max(1, round(it / spacing)):.9g} m divides it")
+              if better else f"{max(1, round(it / spacing)) * spacing:.9g} m would be")
         for key, it in uneven.items()
     ]  # fmt: skip
 

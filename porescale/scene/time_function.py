@@ -62,6 +62,11 @@ class TimeFunction(Section):
         return min(self.values, default=self.mean - abs(self.amplitude))
 
     @property
+    def most(self) -> float:
+        """The largest value that it reaches."""
+        return max(self.values, default=self.mean + abs(self.amplitude))
+
+    @property
     def steepest(self) -> float:
         """The largest magnitude of its rate of change, 1/s of its unit."""
         pairs = list(zip(self.times, self.values, strict=True))

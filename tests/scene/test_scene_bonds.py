@@ -180,10 +180,12 @@ ROCK: dict[str, Any] = {
 }  # fmt: skip
 
 
-def rock(kind: str, **more: Any) -> Scene:
+def rock(kind: str, domain: dict[str, float] | None = None, **more: Any) -> Scene:
     """A rock of some 26 discs, or polygons of them."""
     own = {} if kind == "discs" else {"gap": 2e-3, "pressed": 8e-5}
-    return framed(**ROCK, rock={"kind": kind, **own, **more}, output__energy=False)
+    return framed(
+        **ROCK | ({"domain": domain} if domain else {}), rock={"kind": kind, **own, **more}, output__energy=False
+    )
 
 
 @pytest.mark.slow
@@ -230,8 +232,35 @@ def test_a_strain_that_presses_a_rock_to_nothing_is_refused(strain, least):
     assert rock("discs", strain=[[0, 0.5], [1, -0.4]]).rock
 
 
+@pytest.mark.parametrize("kind", ["discs", "cells"])
+def test_a_rock_that_the_box_would_press_is_refused_and_one_that_stands_free_is_at_rest(kind):
+    """A sample as large as the box was pressed by its sides, and stood at several times its strength without strain."""
+    packing = ROCK["grains"]["packing"] | {"left": 0.0, "bottom": 0.0, "width": 0.3, "height": 0.3}
+    own = {} if kind == "discs" else {"gap": 2e-3, "pressed": 8e-5}
+    filled = ROCK | {"grains": {"density": 2500, "packing": packing}}
+    (line,) = refusals(lambda: framed(**filled, rock={"kind": kind, **own}))
+    assert line.startswith("rock: reaches the sides of the box")
+    assert all(f"domain.{side}" in line for side in ("left", "right", "bottom", "top"))
+    simulation = build(rock(kind))
+    simulation.advance(50)
+    # Round-off of overlaps of a sample 0.3 m wide, times the springs of a plate's 10 contacts, over its 0.2 m
+    assert abs(simulation.tables()["rock"]["stress (Pa)"]) < 10 * 1e7 * 0.3 * np.finfo(float).eps / 0.2
+
+
+def test_a_plate_needs_room_for_its_way():
+    (line,) = refusals(lambda: rock("discs", strain=[[0, 0], [1, 0.25]]))  # 0.05 m and its own 0.02 m
+    assert "leave 0.07 m from domain.right:" in line
+    assert rock("discs", strain=[[0, 0], [1, 0.14]]).rock
+
+
+def test_sides_pressed_deeper_than_their_gap_are_refused():
+    lines = refusals(lambda: rock("cells", pressed=2.1e-3))
+    assert lines[0].startswith("rock.pressed = 0.0021 m: presses sides so deep")
+    assert rock("cells", pressed=2e-3).rock
+
+
 def test_the_speed_to_expect_of_a_rock_is_that_of_its_plate():
-    pulled = derive(rock("discs", strain=[[0, 0], [1e-2, 2]]))
+    pulled = derive(rock("discs", strain=[[0, 0], [1e-2, 2]], domain={"width": 0.75, "height": 0.3}))
     assert pulled.speed == pytest.approx(2 / 1e-2 * 0.2)
     assert any("contacts are too soft" in line for line in pulled.warnings)
 

@@ -63,5 +63,7 @@ def _warn_beside_soil(scene: Scene, soil: SoilSection, out: Report) -> None:
         value = getattr(scene.tank, key)
         if value != TankSection.model_fields[key].default:
             out.warn(f"tank.{key} = {value} has no effect: {why}; take it out: the soil has soil.floor and soil.sides")
+    if soil.held and soil.rest is not None:
+        out.warn(f"soil.rest = {soil.rest:g} has no effect: soil.held has no stress; take it out")
     if soil.strength != SoilSection.model_fields["strength"].default and soil.origin is None:
         out.warn(f"soil.strength = {soil.strength} has no effect: there is no soil.material to have it; take it out")

@@ -1,7 +1,6 @@
 """The report of `check` on a scene of soil and water before it runs."""
 
 import math
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -296,14 +295,8 @@ def levels(scene: Scene, out: Report) -> None:
                 f"the strip of {name} lies closer than {APART:g} spacings to the ground, and its level is disturbed: "
                 f"leave {APART * spacing:.3g} m between them, or lower numerics.spacing"
             )
-    strips = sorted(scene.reservoir, key=lambda it: it.left)
-    for one, other in pairwise(strips):
-        parted = scene.pile is not None and one.left < scene.pile.column(spacing) < other.right
-        if other.left - one.right < 0.5 * spacing and one.table != other.table and not parted:
-            out.warn(
-                f"strips of reservoirs meet at {other.left:g} m with other levels: the higher feeds the lower as "
-                "long as the run lasts; part them, or make them one"
-            )
+    for warning in scene.meeting_strips():
+        out.warn(warning)
     if numerics.shifting > 0.0:
         out.warn(
             "shifting goes by the fastest water anywhere, and crowds what rests beside it: levels and discharges are "

@@ -49,6 +49,8 @@ def suction_report(scene: Scene) -> Report:
             f"with suction soil.permeability and alpha are those under the scene's gravity, {scene.gravity:g} m/s2, "
             f"not under {GRAVITY:g} m/s2 as in soil without: in a centrifuge of N g give N times k, and N times alpha"
         )
+    for warning in scene.meeting_strips():
+        out.warn(warning)
     crest = section.height
     if any(it.highest > crest for it in scene.reservoir):
         out.warn("a level stands over the soil: open water is at rest, so it then stands on both sides of the soil")

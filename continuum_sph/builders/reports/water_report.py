@@ -93,7 +93,8 @@ def water_report(scene: Scene, count: int | None = None) -> Report:
     out.heading("steps")
     limits = step_limits(scene, law)
     for rule, limit in zip(RULES, limits, strict=True):
-        out.row(f"longest step for {rule}", limit, "s")
+        if math.isfinite(limit):  # of what the scene has
+            out.row(f"longest step for {rule}", limit, "s")
     step = min(limits)
     out.row("limited by", RULES[limits.index(step)])
     if count is None:

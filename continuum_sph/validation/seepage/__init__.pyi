@@ -7,6 +7,7 @@ from . import heave as heave
 from . import infiltration as infiltration
 from . import levee as levee
 from . import open_water as open_water
+from . import overtopping as overtopping
 from . import permeability as permeability
 from . import permeameter as permeameter
 from . import saturated_box as saturated_box

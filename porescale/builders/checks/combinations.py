@@ -5,8 +5,17 @@ from porescale.builders.initial.contact_laws import law_class
 from porescale.builders.initial.walls import moving_sides
 from porescale.common.core.errors import Fault
 from porescale.common.schema.names import name_faults, names_of
+from porescale.dem.prepare.rock import BEYOND
+from porescale.scene.bodies.rock import Rock
 from porescale.scene.domain import SIDES
+from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
+
+DEEPEST = 1.0
+"""Of the gap, that sides of a rock's polygons may overlap from the start: cells and triangles run with as much, and at
+twice as much are torn within twenty steps."""
+WHOLE = 1e-6
+"""Of the room beside a rock, that may be missing for round-off."""
 
 
 def check_cell(scene: Scene) -> list[Fault]:
@@ -66,7 +75,38 @@ def check_rock(scene: Scene) -> list[Fault]:
     if packing and scene.rock.gap and scene.rock.gap > 0.2 * packing.diameter:
         problem = "leaves little of polygons as large as the packing's discs"
         faults.append(Fault("rock.gap", scene.rock.gap, problem, "m", f"<= {0.2 * packing.diameter:.3g}"))
+    if scene.rock.gap and (scene.rock.pressed or 0.0) > DEEPEST * scene.rock.gap:
+        problem = "presses sides so deep into each other that corners come near the lines of neighbours"
+        faults.append(Fault("rock.pressed", scene.rock.pressed, problem, "m", f"<= {DEEPEST * scene.rock.gap:.3g}"))
+    if packing:
+        faults += _room_for_rock(scene, scene.rock, packing)
     return faults
+
+
+def _room_for_rock(scene: Scene, rock: Rock, packing: Packing) -> list[Fault]:
+    """Faults of sides of the box that press on the sample, or that its plates would reach: it is to be free."""
+    size = packing.width, packing.height
+    thickness, off = 0.25 * packing.diameter, 0.25 * packing.diameter
+    if rock.polygons:
+        thickness, off = 0.5 * ((rock.gap or 0.0) + (rock.pressed or 0.0)), 0.5 * (rock.gap or 0.0)
+    needed = dict.fromkeys(SIDES, thickness)
+    if rock.plates != "none":
+        along = 0 if rock.plates == "x" else 1
+        first, second = (("left", "right"), ("bottom", "top"))[along]
+        across = (("bottom", "top"), ("left", "right"))[along]
+        needed |= dict.fromkeys((first, second), off + thickness)
+        needed |= dict.fromkeys(across, BEYOND * size[1 - along] + thickness)
+        needed[second] += (rock.strain.most - rock.strain.value(0.0)) * size[along] if rock.strain else 0.0
+    room = {
+        "left": packing.left, "bottom": packing.bottom, "right": scene.domain.width - packing.left - packing.width,
+        "top": scene.domain.height - packing.bottom - packing.height,
+    }  # fmt: skip
+    short = [side for side in SIDES if room[side] < needed[side] * (1.0 - WHOLE)]
+    if not short:
+        return []
+    wanted = " and ".join(f"{needed[side]:.3g} m from domain.{side}" for side in short)
+    problem = "reaches the sides of the box, which would press on it: a rock stands free between its plates"
+    return [Fault("rock", None, problem, repair=f"leave {wanted}: make the box larger, or the packing smaller")]
 
 
 def check_sleep(scene: Scene) -> list[Fault]:

@@ -82,14 +82,16 @@ def check_needed(scene: Scene) -> list[Fault]:
 
 
 def without_effect(scene: Scene) -> list[str]:
-    """Warnings of keys that change nothing: friction where there are no grains, the ramp of a rectangle that stands,
-    a control that neither prescribes nor records."""
+    """Warnings of keys that change nothing: friction where there are no grains, the radius that a fluid sees where
+    there is none, the ramp of a rectangle that stands, a control that neither prescribes nor records."""
     given = {"gate": scene.gate.friction if scene.gate else 0.0}
     given |= {f"rectangle[{k}]": it.friction or 0.0 for k, it in enumerate(scene.rectangle)}
     made = []
     if scene.grains is None:
         made += [f"{key}.friction = {value:g} has no effect: there are no grains; leave it out"
                  for key, value in given.items() if value]  # fmt: skip
+    elif not scene.fluid and not scene.homogenise and (ratio := scene.grains.hydraulic_radius_ratio) is not None:
+        made.append(f"grains.hydraulic_radius_ratio = {ratio:g} has no effect: there is no fluid; leave it out")
     made += [f"rectangle[{k}].ramp = {it.ramp:g} s has no effect: its velocity is 0; leave it out"
              for k, it in enumerate(scene.rectangle) if it.ramp and not any(it.velocity)]  # fmt: skip
     return made + [

@@ -30,6 +30,10 @@ def said(scene):
             WATER_ALONE | {"gate": None, "rectangle": [BLOCK | {"ramp": 0.01, "velocity": [0.001, 0]}]},
         ),
         (
+            dry, GRAIN | {"grains__hydraulic_radius_ratio": 0.8}, "grains.hydraulic_radius_ratio = 0.8",
+            GRAIN | {"grains__hydraulic_radius_ratio": None},
+        ),
+        (
             dry, GRAIN | {"control": [{"grain": 0}]}, "control[0]", GRAIN | {"control": [{"grain": 0, "record": True}]},
         ),
         (

@@ -7,6 +7,7 @@ from continuum_sph.builders.report import report
 from continuum_sph.builders.reports.effect_report import IN_THE_OPEN, OF_WATER
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.validation.tanks import tank_scene
+from porescale.common.core.errors import InputError
 
 OTHER = {
     "artificial_viscosity": 0.05, "artificial_viscosity_2": 1.0, "softening": 1.0, "density_diffusion": 0.05,
@@ -109,3 +110,50 @@ def test_what_a_second_fluid_does_not_have_is_said(law, key, value):
     same = np.array_equal(layers[0].density, layers[1].density)
     assert said == ([f"inclusion.{key}"] if same else [])
     assert not any("has no effect" in it for it in report(made[0]).warnings)
+
+
+@pytest.mark.parametrize("suction", [None, {"alpha": 10.0, "n": 3.0, "water_table": 0.1}])
+@pytest.mark.parametrize(("right", "said"), [(0.2, 1), (0.3, 0)])
+def test_strips_that_meet_at_other_levels_are_said_with_and_without_suction(suction, right, said):
+    corners = [[0.7, 0], [1, 0], [1, 0.3], [0.7, 0.3]]
+    soil = {"stiffness": 1e6, "body": [{"outline": corners}], "suction": suction}
+    strips = [{"left": 0.0, "right": 0.2, "level": 0.2}, {"left": right, "right": right + 0.2, "level": 0.1}]
+    made = tank_scene(1.0, 0.6, 0.05, soil=soil, water={"sound_speed": 30.0}, reservoir=strips)
+    assert sum("strips of reservoirs meet" in it for it in report(made).warnings) == said
+
+
+def test_held_soil_has_no_stress_at_rest():
+    """A sweep over K0 of ground that is held showed no error and changed nothing."""
+    corners = [[0.5, 0], [1, 0], [1, 0.3], [0.5, 0.3]]
+    soil = {"stiffness": 1e6, "permeability": 1e-2, "held": True, "body": [{"outline": corners}]}
+    water = {"sound_speed": 30.0, "column": [{"width": 0.25, "height": 0.4}]}
+    made = [tank_scene(1.0, 0.6, 0.05, soil=soil | more, water=water) for more in ({"rest": 0.7}, {})]
+    said = [[it.split(" = ")[0] for it in report(each).warnings if "has no effect" in it] for each in made]
+    assert said == [["soil.rest"], []]
+    models = [Simulation(each) for each in made]
+    for model in models:
+        model.advance(STEPS)
+    clouds = [model.snapshot().clouds for model in models]
+    assert all(np.array_equal(clouds[0][name].position, clouds[1][name].position) for name in clouds[0])
+
+
+def test_steps_are_limited_by_what_the_scene_has():
+    """Without a second fluid the step for capillarity was infinite, and said to be."""
+    disc = {"x": 0.5, "y": 0.3, "radius": 0.15}
+    tension = {"law": "liquid", "density": 800.0, "surface_tension": 0.07, "disc": [disc]}
+    rows = []
+    for more in ({}, {"inclusion": tension}):
+        made = tank_scene(1.0, 0.6, 0.05, water={"column": [{"width": 1.0, "height": 0.5}]}, **more)
+        rows.append({it.name: it.value for it in report(made).groups["steps"]})
+    assert "longest step for capillarity" not in rows[0]
+    assert 0.0 < rows[1]["longest step for capillarity"] < np.inf
+    assert all(np.isfinite(it) for it in rows[0].values() if isinstance(it, float))
+
+
+def test_water_beside_suction_is_refused_once():
+    """A thin column was refused twice, the second time with a finer spacing that would not help."""
+    corners = [[0.7, 0], [1, 0], [1, 0.3], [0.7, 0.3]]
+    soil = {"stiffness": 1e6, "body": [{"outline": corners}], "suction": {"alpha": 10.0, "n": 3.0, "water_table": 0.1}}
+    with pytest.raises(InputError) as found:
+        tank_scene(1.0, 0.6, 0.05, soil=soil, water={"sound_speed": 30.0, "column": [{"width": 0.1, "height": 0.1}]})
+    assert [it.key for it in found.value.faults] == ["water.column"]

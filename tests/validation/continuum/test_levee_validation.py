@@ -10,6 +10,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.stress import GROWN
 from continuum_sph.validation.seepage.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
+from continuum_sph.validation.seepage.overtopping import times
 from tests.validation.tolerances import tolerance
 
 SLID = Levee(rows=8, end=3.2)
@@ -46,6 +47,12 @@ def test_a_saturated_slope_flatter_than_its_limit_stays():  # the twin that must
     given = Levee(rows=8, end=2.3, land=6.0, river=6.0, pool=0.8)
     rows = course(given)
     assert rows[:, 1 : 1 + len(PARTS)].max() < 0.5 * FAR
+
+
+@pytest.mark.slow
+def test_with_half_as_many_rows_a_levee_is_overtopped_a_tenth_later_or_more():  # the twin that must fail
+    coarse, fine = (times(rows)[-1] for rows in (8, 16))
+    assert not coarse / fine <= 1.0 + tolerance("continuum.levee_times")  # with 8 not before the end, so nan
 
 
 def densities(given):
