@@ -116,7 +116,7 @@ TWICE = {"gate__x": 0.0081}, {"gate__x": 0.009}, {"grains__packing__left": 0.009
         ({"domain__width": 0.0121},
          "domain.width = 0.0121 m: is 60.5 cells of 0.0002 m, not a whole", "number; 0.012 m would be"),
         ({"domain__height": 0.0081},
-         "domain.height = 0.0081 m: is 40.5 cells of 0.0002 m, not a whole", "number; 0.0082 m would be"),
+         "domain.height = 0.0081 m: is 40.5 cells of 0.0002 m, not a whole", "number; a spacing of"),
         ({"domain__left": "periodic", "gate": None},
          "domain.left = 'periodic': but right is wall; make both sides periodic, or none", None),
         (NOTHING, "fluid, grains: nothing to simulate; add [fluid], [grains] or both", None),
