@@ -146,11 +146,11 @@ def _prescribed(section: Container) -> Prescribed:
 
 
 def _lines(section: SegmentBody | Container, at: Any, angle: float, density: float, more: dict[str, Any]) -> Frame:
-    """A chain, closed where it ends where it began, or segments by their ends."""
+    """A chain, closed where it ends where it began, or segments by their ends; closed, a container is hollow."""
     if section.chain:
         points = _turned(section.chain, at, angle)
         if len(points) > 3 and section.chain[0] == section.chain[-1]:
-            return polygon(points[:-1], section.thickness, density, **{**more, "width": None})
+            return polygon(points[:-1], section.thickness, density, **more)
         return chain(points, section.thickness, density, **more)
     ends = _turned(np.array(section.ends).reshape(-1, 2), at, angle)
     return from_ends(ends.reshape(-1, 2, 2), section.thickness, density, **more)
@@ -161,7 +161,7 @@ def _container(plan: MaterialPlan, section: Container, more: dict[str, Any]) -> 
     points = np.array(section.chain or section.ends).reshape(-1, 2)
     width = max(2.0 * section.thickness, ROD * float(np.ptp(points, axis=0).max()))
     density = plan.density(section.material or plan.of_walls)
-    frame = _lines(section, (0.0, 0.0), 0.0, density, more | {"width": width, "long": True})
+    frame = _lines(section, (0.0, 0.0), 0.0, density, more | {"width": width, "long": True, "hollow": True})
     if section.pivot is None:
         return frame
     own = frame.mass_properties()

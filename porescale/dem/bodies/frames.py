@@ -3,6 +3,7 @@
 Mass.  A polygon is solid within the lines of its segments (their thickness lies outside and has no mass): area,
 centroid and second moment by the shoelace formula.  Other frames are rods: a segment of length L is a rectangle of L by
 ``width`` (default: twice the thickness), its round ends have no mass, joints count for each segment that ends there.
+A hollow frame is of rods also where its chain closes: a drum.
 
 A frame is a clump (clumps.py) of discs at its corners, as large as the thickness, with segments between them; it moves,
 is controlled and monitored as clumps are.  Walls act on the corners.  Sources: Matsushima, DEMseg tutorial I-2 and
@@ -43,7 +44,7 @@ class Frame:
     corners : m;  ends : corners at the ends of each segment, by number;  thickness : m, >= 0, half of what a segment
     measures across;  density : kg/m^3;  width : m, of rods, None: twice the thickness;  velocity m/s, spin rad/s: at
     the start;  long : its segments are containers, kept out of the cells (see segment_list.py);  material : number;
-    body : mass, centroid and inertia by hand.
+    hollow : of rods also where closed;  body : mass, centroid and inertia by hand.
 
     Raises InputError where there is no segment, one without length, a corner without a segment, a polygon that
     crosses itself, has a spike or no area, or no mass.
@@ -58,6 +59,7 @@ class Frame:
     spin: float = 0.0
     long: bool = False
     material: int = 0
+    hollow: bool = False
     body: Body | None = None
 
     def __post_init__(self) -> None:
@@ -119,7 +121,7 @@ class Frame:
         if self.body is not None:
             return replace(self.body, frame=True)
         at = np.array(self.corners, float)
-        if self.closed:
+        if self.closed and not self.hollow:
             area, centroid, second = polygon_moments(at[self.loop])
         else:
             ends = np.array(self.ends)

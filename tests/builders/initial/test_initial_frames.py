@@ -1,9 +1,12 @@
 """Bodies of segments among materials: the step that they ask for does not depend on which they name."""
 
+import numpy as np
 import pytest
 
 from porescale.builders.build import build
 from porescale.builders.derive import derive
+from porescale.builders.initial.frames import ROD as THIN
+from tests.reference.scenes import grain
 from tests.reference.scenes_of_grains import framed
 
 SQUARE = {"corners": [[0, 0], [1e-3, 0], [1e-3, 1e-3], [0, 1e-3]], "thickness": 5e-5, "at": [[4e-3, 2e-3]]}
@@ -18,3 +21,27 @@ def test_a_free_body_may_be_of_the_second_material(sections):
     steps = {derive(it).contact_step for it in scenes}
     assert len(steps) == 1  # both materials are alike but for their names
     assert [set(build(it).grains.material.tolist()) for it in scenes] == [{0}, {1}]
+
+
+def test_a_drum_is_hollow_and_turns_as_a_ring():
+    """A container whose chain closes had the mass of a solid polygon: 50 times that of its walls here."""
+    radius, thickness, moment, sides = 2e-3, 1e-5, 1e-3, 90
+    turn = 2.0 * np.pi * np.arange(sides + 1) / sides
+    chain = 4e-3 + radius * np.column_stack((np.cos(turn), np.sin(turn)))
+    chain[-1] = chain[0]
+    drum = {
+        "chain": chain.tolist(), "thickness": thickness, "pivot": [4e-3, 4e-3], "rotation": {"force": moment},
+        "name": "drum", "record": True,
+    }  # fmt: skip
+    simulation = build(framed(container=[drum], grains={"grain": [grain(4e-3, 4e-3)]}, gravity=[0, 0]))
+    side = 2.0 * radius * np.sin(np.pi / sides)
+    width = max(2.0 * thickness, THIN * 2.0 * radius)
+    mass = 2500 * sides * side * width
+    # Rods as wide as they are long or narrower, a radius or hardly less from the pivot
+    apart = radius * np.cos(np.pi / sides)
+    inertia = mass * (apart**2 + (side**2 + width**2) / 12.0)
+    table = simulation.grains.steering.clumps
+    assert table.mass[0] == pytest.approx(mass, rel=1e-12)
+    simulation.advance(50)
+    # From rest the leap-frog's speed is M t/I to round-off
+    assert table.spin[0] == pytest.approx(moment * simulation.time / inertia, rel=1e-9)
