@@ -10,7 +10,7 @@ import numpy as np
 
 from porescale.builders.checks.contact import angles_for_friction, material_doubts, wall_friction_doubts
 from porescale.builders.checks.discs_alone import left_out
-from porescale.builders.checks.frame_places import check_frames, strays, thin_for
+from porescale.builders.checks.frame_places import check_frames, check_sample, strays, thin_for
 from porescale.builders.checks.grain_places import check_grain_places
 from porescale.builders.checks.needed import in_solids, without_effect
 from porescale.builders.checks.own_laws import check_own_contact, energy_of_mass
@@ -168,7 +168,7 @@ def derive(scene: Scene) -> Derived:
 
 def _frames(scene: Scene, faults: list[Fault]) -> list[Placed]:
     """The frames placed by hand, and faults of them and of where they are; none where they are at fault."""
-    if not (scene.segment or scene.polygon or scene.container):
+    if not (scene.segment or scene.polygon or scene.container or scene.rock):
         return []
     try:
         frames = placed_frames(scene)
@@ -176,7 +176,8 @@ def _frames(scene: Scene, faults: list[Fault]) -> list[Placed]:
         faults += error.faults
         return []
     names, x, r = placed(scene)
-    faults += check_frames(scene, frames, make_discs(x, r, np.ones(len(r))), names)
+    discs = make_discs(x, r, np.ones(len(r)))
+    faults += [*check_frames(scene, frames, discs, names), *check_sample(scene, frames, discs, names)]
     return frames
 
 

@@ -17,7 +17,7 @@ from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.prepare.rock import rock as made_by_hand
 from porescale.output.frame_pictures import cracks
 from porescale.output.rock_pictures import drawn, write_rock_picture
-from tests.reference.scenes import refusals
+from tests.reference.scenes import grain, refusals
 from tests.reference.scenes_of_grains import assert_same_bits, framed, loose, resumed
 
 STIFFNESS, OVERLAP = 2e5, 8e-7
@@ -245,6 +245,28 @@ def test_a_rock_that_the_box_would_press_is_refused_and_one_that_stands_free_is_
     simulation.advance(50)
     # Round-off of overlaps of a sample 0.3 m wide, times the springs of a plate's 10 contacts, over its 0.2 m
     assert abs(simulation.tables()["rock"]["stress (Pa)"]) < 10 * 1e7 * 0.3 * np.finfo(float).eps / 0.2
+
+
+@pytest.mark.parametrize("kind", ["discs", "cells"])
+@pytest.mark.parametrize("key", ["grains.grain[0]", "disc[0]", "clump[0]", "polygon[0]", "segment[0]", "container[0]"])
+def test_what_stands_in_a_rock_is_refused_and_beside_it_is_not(kind, key):
+    """A disc in a rock of cells was bonded by the run, and threw it apart in the first steps."""
+
+    def beside(y):
+        name = key.split("[")[0].split(".")[-1]
+        made = {
+            "grain": grain(0.15, y), "disc": {"x": 0.15, "y": y, "diameter": 2e-3},
+            "clump": {"discs": [[-1e-3, 0, 1e-3], [1e-3, 0, 1e-3]], "at": [[0.15, y]]},
+            "polygon": {"sides": 4, "diameter": 4e-3, "thickness": 1e-3, "at": [[0.15, y]]},
+            "segment": {"ends": [[-2e-3, 0, 2e-3, 0]], "thickness": 1e-3, "at": [[0.15, y]]},
+            "container": {"ends": [[0.02, y, 0.28, y]], "thickness": 1e-3},
+        }[name]  # fmt: skip
+        grains = ROCK["grains"] | ({"grain": [made]} if name == "grain" else {})
+        return rock(kind).with_({"grains": grains} | ({} if name == "grain" else {name: [made]}))
+
+    (line,) = refusals(lambda: derive(beside(0.15)))
+    assert line.startswith(f"{key}: stands in the sample of [rock]")
+    assert derive(beside(0.285)).corners >= 0
 
 
 def test_a_plate_needs_room_for_its_way():

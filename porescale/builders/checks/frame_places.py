@@ -23,6 +23,7 @@ from porescale.dem.discs import Discs
 from porescale.dem.motion.control import Control, Moved, schedule_of
 from porescale.dem.motion.control import Placed as PlacedControl
 from porescale.dem.motion.time_function import schedule_rows, value_at
+from porescale.dem.prepare.obstacles import crosses
 
 if TYPE_CHECKING:
     from porescale.scene.contact import Contact
@@ -50,6 +51,23 @@ def check_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Se
         faults += across_walls(scene, corners, reach, keys, 0.0)
     found = None if faults else first_overlap(share, placed, discs, names)
     return faults + ([found] if found else [])
+
+
+def check_sample(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> list[Fault]:
+    """A fault for the first body placed by hand, of discs with ``names`` and frames, that stands in the sample of a
+    [rock]: bonds would be made with it, or torn by it."""
+    packing = scene.grains.packing if scene.grains else None
+    if scene.rock is None or packing is None:
+        return []
+    low = np.array([packing.left, packing.bottom])
+    high = low + np.array([packing.width, packing.height])
+    gap = discs.position - np.clip(discs.position, low, high)
+    found = [name for name, inside in zip(names, np.hypot(*gap.T) < discs.radius, strict=True) if inside]
+    for it in placed:
+        if crosses(it.frame, tuple(low - it.frame.thickness), tuple(high + it.frame.thickness)):
+            found.append(it.key)
+    problem = "stands in the sample of [rock], which fills the rectangle of grains.packing"
+    return [Fault(found[0], None, problem, repair="move it out")] if found else []
 
 
 def require_frames_apart(share: float, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> None:

@@ -74,7 +74,7 @@ class Obstacles:
 
     def stand_in(self, lower: Pair, upper: Pair) -> bool:
         """Whether a body, or a side without thickness, takes room of the rectangle from ``lower`` to ``upper`` (m)."""
-        return self.area(lower, upper) > 0.0 or any(_crosses(it, lower, upper) for it in self.frames)
+        return self.area(lower, upper) > 0.0 or any(crosses(it, lower, upper) for it in self.frames)
 
     def depth(self, points: Floats, reach: float) -> Floats:
         """How deep (m) points (n, 2) m lie in the deepest body, below zero outside.
@@ -262,7 +262,7 @@ def _from_frame(frame: Frame, at: Floats, solid: bool) -> Callable[[Floats], Bes
     return beside
 
 
-def _crosses(frame: Frame, lower: Pair, upper: Pair) -> bool:
+def crosses(frame: Frame, lower: Pair, upper: Pair) -> bool:
     """Whether a side of a frame has a point within the rectangle from ``lower`` to ``upper`` (m)."""
     a, b = np.moveaxis(np.array(frame.corners)[np.array(frame.ends)], 1, 0)
     low, high = np.array(lower), np.array(upper)
