@@ -191,7 +191,7 @@ class Scene(SceneBase):
                     Fault(f"{key}.height", column.height, "reaches beyond the tank", "m",
                           f"<= {tank.height - column.bottom:g}")
                 )  # fmt: skip
-            if min(column.width, column.height) < 4.0 * spacing:
+            if min(column.width, column.height) < (4.0 - WHOLE) * spacing:
                 finest = min(column.width, column.height) / 4.0
                 faults.append(
                     Fault("numerics.spacing", spacing, f"leaves {key} fewer than 4 particles across", "m",

@@ -162,6 +162,14 @@ def test_lengths_that_are_not_whole_spacings_are_refused_with_the_nearest_that_a
         trials.column_scene(0.1, tank=tank, column=column)
 
 
+def test_a_column_of_just_four_spacings_is_taken_whatever_rounds():
+    height = 0.7 - 0.5  # 0.2 less 4e-17: it was refused for a spacing that had to be <= 0.05 m, with 0.05 m
+    assert height < 4.0 * 0.05
+    assert trials.column_scene(0.05, tank=(1.0, 1.0), column=(0.5, height)).water.column[0].height == height
+    with pytest.raises(InputError, match="fewer than 4 particles across"):
+        trials.column_scene(0.05, tank=(1.0, 1.0), column=(0.5, 0.15))
+
+
 def test_walls_and_stops_stand_at_the_same_place_when_a_width_is_whole_but_for_round_off():
     # 0.9e-6 of a length is within what counts as whole: walls and stops go to the whole number together.
     flow = Simulation(trials.column_scene(0.1, tank=(2.0 * (1 + 0.9e-6), 1.5), column=(0.5, 1.0))).flow
