@@ -80,4 +80,4 @@ def filtered(start, split, partner, record, material, mass, density, out, kind, 
             value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
             above += mass[j] * value
             below += mass[j] / density[j] * value
-        out[i] = above / below
+        out[i] = above / below if below > 0.0 else density[i]  # those that wait have no mass

@@ -191,3 +191,18 @@ def test_a_reservoir_without_particles_left_is_said_to_have_none():
     with pytest.raises(Unstable, match=said) as raised:
         model.advance(1)
     assert "nan" not in str(raised.value)
+
+
+def test_a_filter_of_densities_leaves_what_waits_as_it_is():
+    """Particles that wait have no mass, so their mean density was 0/0: such a run stopped at its first check."""
+    every = 5
+    model = Simulation(scene(numerics={"spacing": 0.02, "density_filter": every}))
+    layer = model.flow.water.layer
+    water = slice(0, layer.fluid)
+    waiting = layer.mass[water] == 0.0
+    before = layer.density[water][waiting].copy()
+    assert waiting.any()
+    model.advance(every + 1)
+    model.check()
+    still = layer.mass[water][waiting] == 0.0
+    assert np.array_equal(layer.density[water][waiting][still], before[still])
