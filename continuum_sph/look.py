@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
 """Names and colours of water and soil."""
-LINE = {-1: ("phreatic", "#c0182b")}
-"""Of the surface of the water in soil, which is no particle's layer."""
+PHREATIC = "phreatic", "#c0182b"
+"""Name and colour of the surface of the water in soil, which is no particle's layer."""
 AIR = {3: ("air", "#e2e2e2")}
 """And of air in it."""
 GROUND = ("water", "#5b8fd0"), ("soil", "#d9bd82")
@@ -35,7 +35,7 @@ def look_of_scene(
     from continuum_sph.scene.look import MARGIN
     from continuum_sph.scene.pile import SheetPileSection  # pydantic takes longer to import than a page to be asked for
     from porescale.common.pictures.choose import with_section
-    from porescale.common.pictures.look import Look
+    from porescale.common.pictures.look import MARKED, Look
 
     width, height = scene["tank"]["width"], scene["tank"]["height"]
     corners = [(0.0, height), (0.0, 0.0), (width, 0.0), (width, height)]
@@ -54,7 +54,7 @@ def look_of_scene(
     elif scene.get("face") and scene["soil"]["held"]:
         more = {"colour": "head"}
     elif scene["soil"]:
-        kinds = LAYERS | (AIR if scene.get("air") else {}) | (LINE if surface else {})
+        kinds = LAYERS | (AIR if scene.get("air") else {}) | ({MARKED: PHREATIC} if surface else {})
         more = {"colour": "layer", "kinds": kinds, "marks": surface}
     elif scene["inclusion"]:
         more = {"colour": "fluid", "kinds": TWO}

@@ -170,6 +170,6 @@ def _keys(found: Survey, axes: Axes) -> None:
     for k, scale in enumerate(it for it in (found.field, found.cloud) if it is not None):
         beside = axes.inset_axes((1.02 + 0.2 * k, 0.0, 0.025, 1.0))
         draw_bar(axes.figure, scale, beside, float(axes.xaxis.label.get_fontsize()))
-    if found.look.kinds:
-        kinds = kinds_of(found.look)
+    if found.kinds:
+        kinds = kinds_of(found)
         axes.legend(handles=kinds, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, handlelength=1.0)

@@ -99,7 +99,6 @@ class Initial:
 
 def initial_figure(snapshot: Snapshot, shown: Initial) -> Figure:
     """The picture: the state to scale, labels beside it (below a wide box) with a line to what each names, the lens."""
-    shown = replace(shown, look=_present(snapshot, shown.look))
     found = survey([snapshot], replace(shown.look, field="", arrows=0))
     found.view = _with_room(found.view)
     place = _Place(found, shown)
@@ -122,22 +121,13 @@ def initial_figure(snapshot: Snapshot, shown: Initial) -> Figure:
         figure.text(0.15 / place.width, down, line, fontsize=1.1 * FONT, parse_math=False)
     if shown.lens is not None:
         _magnified(axes, place.axes(figure, place.lens), snapshot, found, shown.lens)
-    if shown.look.kinds:
+    if found.kinds:
         x, y, _, _ = place.legend
         corner = x / place.width, 1 - y / place.height
-        figure.legend(handles=kinds_of(shown.look), loc="upper left", bbox_to_anchor=corner, fontsize=FONT,
+        figure.legend(handles=kinds_of(found), loc="upper left", bbox_to_anchor=corner, fontsize=FONT,
                       frameon=False, borderpad=0, borderaxespad=0)  # fmt: skip
     fit_ticks(figure, [axes])
     return figure
-
-
-def _present(snapshot: Snapshot, look: Look) -> Look:
-    """The look with the kinds alone that the state has."""
-    cloud = look.drawn(snapshot)
-    if not look.kinds or cloud is None:
-        return look
-    there = np.unique(cloud.data[look.colouring(cloud)])
-    return replace(look, kinds={kind: value for kind, value in look.kinds.items() if kind in there})
 
 
 def initial_pixels(snapshot: Snapshot, shown: Initial) -> AnyArray:
@@ -218,7 +208,7 @@ class _Place:
         head = 0.3 + LINE * len(self.title) + 0.45 * self.lying
         lens = LENS if shown.lens is not None else 0.0
         titled = max(lens, len(shown.lens.text) * 0.085) if shown.lens is not None else 0.0
-        legend = LINE * len(shown.look.kinds)
+        legend = LINE * len(found.kinds)
         if self.lying:
             self.box = (MARGIN, head, wide, high)
             self.rows, depth = self._flags(wide)
@@ -234,7 +224,7 @@ class _Place:
         self.lens = (aside, head + LINE, lens, lens)
         self.legend = (aside, head + (lens + 2 * LINE if lens else 0.0), 0.0, 0.0)
         widest = max([len(it) for it in self.title], default=0) * 0.09 + 0.2
-        kinds = 2.0 if shown.look.kinds else 0.0
+        kinds = 2.0 if found.kinds else 0.0
         self.width = max(aside + max(titled, kinds) + PAD, widest)
         self.height = head + max(tall, lens + legend + 3 * LINE if lens else legend) + 0.65
         self.spread = head, tall

@@ -22,7 +22,7 @@ from matplotlib.textpath import text_to_path
 from matplotlib.ticker import FixedLocator, MaxNLocator, ScalarFormatter
 
 from porescale.common.core.types import AnyArray
-from porescale.common.pictures.look import Look, Scale, Survey, View, length_unit
+from porescale.common.pictures.look import Scale, Survey, View, length_unit
 
 MM, DPI = 1 / 25.4, 100
 LEFT, RIGHT, BOTTOM = 5.1, 1.4, 4.2
@@ -135,7 +135,7 @@ class _Plan:
     def __init__(self, found: Survey, headers: list[str], style: Style, aspect: float) -> None:
         self.own, self.font = style.font, style.font * style.dpi / 72
         self.scales = [scale for scale in (found.field, found.cloud) if scale is not None]
-        self.kinds = [label for label, _ in found.look.kinds.values()]
+        self.kinds = [label for label, _ in found.kinds.values()]
         self.bar_line = LINE * self.font if style.scale_bar and not found.look.plain else 0.0
         self.limit = style.width * style.dpi - 2, style.height * style.dpi - 2  # rounded up to even dots
         text = found.look.title if style.titled else ""
@@ -274,7 +274,7 @@ def _keys(made: Stage, found: Survey, plan: _Plan) -> None:
     font = plan.font
     x0, y0, _, _ = plan.boxes[0]
     right, low = (max(box[k] + box[k + 2] for box in plan.boxes) for k in (0, 1))
-    patches = kinds_of(found.look)
+    patches = kinds_of(found)
     how: Any = {"handles": patches, "frameon": False, "handlelength": 1.0, "fontsize": made.font, "borderpad": 0.0,
                 "borderaxespad": 0.0}  # fmt: skip
     at = right + 1.3 * font if plan.upright else plan.foot
@@ -291,9 +291,9 @@ def _keys(made: Stage, found: Survey, plan: _Plan) -> None:
         made.figure.legend(loc="upper left", bbox_to_anchor=where, **how)
 
 
-def kinds_of(look: Look) -> list[Patch]:
-    """What a legend shows of the kinds of a look."""
-    return [Patch(facecolor=colour, label=label) for label, colour in look.kinds.values()]
+def kinds_of(found: Survey) -> list[Patch]:
+    """What a legend shows of the kinds that there are."""
+    return [Patch(facecolor=colour, label=label) for label, colour in found.kinds.values()]
 
 
 def draw_bar(figure: Any, scale: Scale, axes: Axes, font: float, *, lying: bool = False) -> None:

@@ -29,6 +29,8 @@ SHARE = 99.5
 SAME = 1e-6
 """Values that differ by this share of them are the same: a few of the smallest steps of the single precision in which
 snapshots are stored."""
+MARKED = -1
+"""The kind of a look that stands for its marks, which are of no point."""
 PREFIXES = ((1e-8, 1e9, "n"), (1e-5, 1e6, "µ"), (1e-1, 1e3, "m"), (1e4, 1.0, ""), (1e7, 1e-3, "k"), (1e10, 1e-6, "M"))
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -40,7 +42,8 @@ class Look:
     grid, field : cell array to paint, vectors by their length; shown if the snapshot has it;
     cloud : points to draw (None: the first cloud there is, "": none): discs to scale when they carry a
     "radius", dots otherwise;  colour : array of the cloud that colours it (None: plain discs; dots by speed
-    when they have one); kinds : value of ``colour`` -> (label, colour), for whole numbers such as materials;
+    when they have one); kinds : value of ``colour`` -> (label, colour), for whole numbers such as materials, MARKED for
+    the marks;
     limits, cloud_limits : range of the colours (None: from the values, robustly);
     shapes : a second cloud, whose lines and polygons are drawn, coloured as the first;  marks : lines drawn on top in
     red, a function of the snapshot, such as cracks;  held : so many discs, the last of the cloud, are held or driven,
@@ -249,7 +252,7 @@ def time_text(time: float, longest: float, plain: bool = False) -> str:
 class Survey:
     """Properties of all snapshots that are needed before the first is painted.
 
-    fastest : speed, m/s, that an arrow of full length has.
+    fastest : speed, m/s, that an arrow of full length has;  kinds : those of the look that they have, for the legend.
     """
 
     look: Look
@@ -259,6 +262,7 @@ class Survey:
     dot: float = 0.0
     longest: float = 0.0
     fastest: float = 0.0
+    kinds: Mapping[int, tuple[str, str]] = default(default_factory=dict)
 
     def colours(self, cloud: Cloud) -> AnyArray:
         """Colours of points, (n, 3) uint8: of the values, of the kinds, of discs that are held, or of a plain grain."""
@@ -283,6 +287,7 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
     field_units, cloud_units, coloured_by = "", "", ""
     noise: dict[str, float] = {}
     box = [math.inf, -math.inf, math.inf, -math.inf]
+    kinds: set[int] = set()
     for snapshot in snapshots:
         found.longest = max(found.longest, snapshot.time)
         grid, cloud = look.painted(snapshot), look.drawn(snapshot)
@@ -294,11 +299,14 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
         for part in (look.shaped(snapshot), cloud):
             if part is not None and len(part.position) and look.colouring(part):
                 coloured_by = look.colouring(part)
+                kinds |= {int(it) for it in np.unique(part.data[coloured_by])} if look.kinds else set()
                 points.append(_thin(magnitude(part.data[coloured_by], 1)))
                 cloud_units = part.units.get(coloured_by, "")
         if look.arrows:
             moving = [*(it.cells for it in [grid] if it), *(it.data for it in [cloud] if it)]
             speeds += [_thin(magnitude(it["velocity"], it["velocity"].ndim - 1)) for it in moving if "velocity" in it]
+        if look.kinds and len(look.marks_at(snapshot)):
+            kinds.add(MARKED)
         if cloud is None or not len(cloud.position):
             continue
         if "radius" not in cloud.data and not found.dot:
@@ -325,6 +333,7 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
     if speeds and (fastest := float(np.nanpercentile(np.concatenate(speeds), SHARE))) > noise.get("m/s", 0.0):
         found.fastest = fastest
     found.view = look.view or found.view
+    found.kinds = {kind: value for kind, value in look.kinds.items() if kind in kinds}
     return found
 
 

@@ -8,8 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from porescale.common.pictures.axes import draw
-from porescale.common.pictures.layout import STYLES, round_length, screen, stage
-from porescale.common.pictures.look import Look, survey
+from porescale.common.pictures.layout import STYLES, kinds_of, round_length, screen, stage
+from porescale.common.pictures.look import MARKED, Look, survey
 from porescale.common.record.model import Cloud, Grid, Snapshot
 
 ASPECTS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
@@ -122,3 +122,18 @@ def test_axes_of_the_user_have_ticks_apart(aspect):
     figure = Figure((6, 5), layout="constrained")
     draw(box(aspect), Look(title="a box"), figure.add_subplot())
     assert overlapping(figure) == []
+
+
+def test_a_legend_names_what_the_snapshots_have_and_no_more():
+    """Every picture of a levee named dry soil and a phreatic line, whether there were any or not."""
+    kinds = {0: ("water", "#00a"), 1: ("dry soil", "#a00"), 2: ("wet soil", "#0a0"), MARKED: ("phreatic", "#f00")}
+    at = np.array([[0.1, 0.1], [0.2, 0.1]])
+    frames = [Snapshot(0.1 * k, k, {}, {"p": Cloud(at, {"layer": np.array([0, 2 * k])})}) for k in range(2)]
+
+    def named(snapshots, **more):
+        look = Look(cloud="p", colour="layer", kinds=kinds, dot=0.01, **more)
+        return [it.get_label() for it in kinds_of(survey(snapshots, look))]
+
+    assert named(frames[:1]) == ["water"]
+    assert named(frames) == ["water", "wet soil"]
+    assert named(frames, marks=lambda _: [((0.0, 0.0), (0.1, 0.1))]) == ["water", "wet soil", "phreatic"]
