@@ -105,6 +105,7 @@ class Record:
         require_length(folder / SERIES, saved.series_bytes)
         for name, size in saved.table_bytes.items():
             require_length(_table(folder, name), size)
+        snapshots.require_all(folder, model.snapshot())
         now = cards.circumstances()
         changed = cards.changed_circumstances(card, now)
         card |= cards.plain(given)

@@ -131,6 +131,16 @@ def trim(folder: Path, last: int) -> None:
                 (Path(folder) / f"{name}.vtkhdf").unlink()
 
 
+def require_all(folder: Path, snapshot: Snapshot) -> None:
+    """InputError where there are joined files, but not that of each grid and cloud of a ``snapshot`` to come: one that
+    was removed would take the earlier snapshots of the others with it, which would lack its part."""
+    there = {path.stem for path in Path(folder).glob("[!.]*.vtkhdf")}
+    for name in sorted({*snapshot.grids, *snapshot.clouds} - there if there else ()):
+        problem = "is missing, and there are earlier snapshots"
+        repair = "put it back, or start the run anew"
+        raise InputError(Fault("snapshots", str(Path(folder) / f"{name}.vtkhdf"), problem, repair=repair))
+
+
 def _rewrite(folder: Path, entries: dict[int, dict[str, Frame]]) -> None:
     """Write each joined file anew from the catalogue's ``entries``."""
     names = {name for entry in entries.values() for name in entry}

@@ -182,3 +182,20 @@ def test_a_run_without_the_watch_would_have_ended_well_without_its_folder(tmp_pa
     run_toy(folder, model=Watched(lambda: shutil.rmtree(folder)))
     assert not (folder / "series.csv").exists()
     assert issubclass(Gone, PorescaleError)
+
+
+def test_a_file_of_snapshots_that_was_removed_is_missed_before_the_others_lose_theirs(tmp_path):
+    """A run that went on without it left the later snapshots alone in every file."""
+    folder = tmp_path / "run"
+    run_toy(folder)
+    one, *others = sorted(folder.glob("*.vtkhdf"))
+    assert others
+    kept = one.read_bytes()
+    one.unlink()
+    before = {path: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    with pytest.raises(InputError, match=rf"{one.name}.*is missing, and there are earlier snapshots; put it back"):
+        run_toy(folder, duration=0.2, resume=True)
+    assert {path: path.read_bytes() for path in folder.iterdir() if path.is_file()} == before
+    one.write_bytes(kept)
+    run_toy(folder, duration=0.2, resume=True)
+    assert len(open_run(folder)) == 11
