@@ -214,9 +214,9 @@ def test_what_is_filled_before_a_shut_gate_is_warned_of_and_refused():
     sucked = {"domain__left": "pressure", "domain__right": {"kind": "velocity", "velocity": [0.1, 0.0]}}
     with pytest.raises(InputError, match=r"^domain: the sides let 0\.5 of the fluid out right of the gate"):
         derive(gated(0.03, **sucked))
-    # The twins: open from the start on, and with an outlet of its own.
+    # The twins: open from the start on, and open on its own side.
     assert not warned(gated(0.0, domain__right="pressure"), "let ")
-    assert not warned(gated(0.03, domain__right="pressure", domain__top="pressure"), "let ")
+    assert not warned(gated(0.03, domain__right="pressure", domain__left="pressure"), "let ")
 
 
 @pytest.mark.parametrize("right", ["pressure", {"kind": "velocity", "velocity": [0.01, 0.0]}])
