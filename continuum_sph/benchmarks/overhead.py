@@ -124,10 +124,11 @@ SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
 KINDS = SceneKinds([
     SceneKind(PLAIN, "particle", SMALLEST, alone,
-         because="1 to 5 % from process to process: what calls hand over 1.5 %; Python between kernels 1.5 %; stops at "
-                 "walls counted, densities and pressures kept for others 1 %; the pass over pairs 1 %"),
+         because="13 to 20 % from process to process on this machine, 1 to 5 % on that of 2026-11-22: stops at walls "
+                 "are counted, densities and pressures kept for others, and Python stands between kernels, some 4 %; "
+                 "the rest is in the pass over pairs"),
     SceneKind(SMOOTHED, "particle", SMALLEST, lambda: alone(numerics={"xsph": 0.5}),
-         because="as of water only, and 3 % in the pass over pairs"),
+         because="5 to 9 % from process to process: as of water only"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
           output=ENERGY_BUDGET),

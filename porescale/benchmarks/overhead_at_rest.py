@@ -67,14 +67,14 @@ def smallest(made: Simulation) -> Callable[[int], object]:
 
 KINDS = SceneKinds([
     SceneKind("moving grains in water", "cell", SMALLEST, lambda: built(wet(), "cell", smallest), steps=10,
-         because="1.28 to 1.32 from run to run; of the 0.18 ms more rows with grains take 0.12, half of it to lay them "
-                 "out and take their loads, lists and sums over rows 0.03, contact steps 0.01, Python the rest"),
+         because="1.15 to 1.20 from run to run: rows with grains are laid out and their loads taken, lists and sums "
+                 "over rows, contact steps, Python"),
     SceneKind("grains that may move", "cell", "the same grains, held", lambda: built(wet(), "cell", nothing_moves),
          steps=10),
     SceneKind("sleep under water", "grain", "pile under water", sleeping, steps=10,
-         because="all sleep: no contact steps, 4 %, and cells stay covered as they were, 14 %, until a grain moves; "
-                 "0.84 to 0.88 from run to run, 0.97 on a busy machine"),
+         because="all sleep: no contact steps, and cells stay covered as they were until a grain moves; 0.91 to 0.94 "
+                 "from run to run"),
     SceneKind("a look for water at rest", "cell", "water only", looking,
-         because="cells at rest are not left out: in a collapse there are none once sound has crossed the tank"),
+         because="a look beside a step: cells at rest are not left out, as it costs more, and in a collapse there are none once sound has crossed the tank"),
 ])  # fmt: skip
 """More of what `porescale study parts` measures."""
