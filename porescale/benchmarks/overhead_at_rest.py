@@ -75,6 +75,7 @@ KINDS = SceneKinds([
          because="all sleep: no contact steps, and cells stay covered as they were until a grain moves; 0.91 to 0.94 "
                  "from run to run"),
     SceneKind("a look for water at rest", "cell", "water only", looking,
-         because="a look beside a step: cells at rest are not left out, as it costs more, and in a collapse there are none once sound has crossed the tank"),
+         because="a look beside a step: cells at rest are not left out, as it costs more, and in a collapse there are "
+                 "none once sound has crossed the tank"),
 ])  # fmt: skip
 """More of what `porescale study parts` measures."""
