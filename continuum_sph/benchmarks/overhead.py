@@ -125,8 +125,8 @@ SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 KINDS = SceneKinds([
     SceneKind(PLAIN, "particle", SMALLEST, alone,
          because="13 to 20 % from process to process on this machine, 1 to 5 % on that of 2026-11-22: stops at walls "
-                 "are counted, densities and pressures kept for others, and Python stands between kernels, some 4 %; "
-                 "the rest is in the pass over pairs"),
+                 "are counted, densities and pressures kept for others, and Python stands between kernels, some 4 % "
+                 "then; where the rest goes was not looked into"),
     SceneKind(SMOOTHED, "particle", SMALLEST, lambda: alone(numerics={"xsph": 0.5}),
          because="5 to 9 % from process to process: as of water only"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),

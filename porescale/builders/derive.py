@@ -32,10 +32,11 @@ from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.sanity import WORST_OF_TRAVELLING_CORNERS, WORST_TRAVEL
 from porescale.dem.timestep import SAFETY, packing_limit, stable_step
+from porescale.lbm.boundary.thin_plate import open_ends
 from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.bodies.gate import Gate
 from porescale.scene.contact import Contact
-from porescale.scene.domain import SIDES, Domain
+from porescale.scene.domain import Domain
 from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import WHOLE, is_whole
 
@@ -227,17 +228,16 @@ def _lattice(
     faults += _uneven(lengths, h)
     cells, column = (round(domain.width / h), round(domain.height / h)), round(gate.x / h) if gate else None
     if column is not None:
-        faults += _beside_the_gate(domain, column, cells[0])
+        faults += _open_gate(domain, column, cells[0])
     return scales, cells, column
 
 
-def _beside_the_gate(domain: Domain, column: int, columns: int) -> list[Fault]:
-    """Faults of sides that fluid passes where a gate ends, left of a ``column`` of cells, or beside it: as `Plate`."""
+def _open_gate(domain: Domain, column: int, columns: int) -> list[Fault]:
+    """Faults of sides that fluid passes where a gate ends, left of a ``column`` of so many; periodic ones are said."""
     kinds = {name: side.boundary for name, side in domain.sides.items()}
-    beside = {"bottom", "top"} | {name for name, at in (("left", 1), ("right", columns - 1)) if column == at}
     repair = "let it end at walls, or take the gate out"
     return [Fault(f"domain.{name}", kinds[name].name, "fluid passes where the gate ends", repair=repair)
-            for name in SIDES if name in beside and kinds[name].settles]  # fmt: skip
+            for name in open_ends(kinds, columns, column) if not kinds[name].periodic]  # fmt: skip
 
 
 def _uneven(lengths: dict[str, float], spacing: float) -> list[Fault]:

@@ -139,10 +139,10 @@ class Levee:
                 row = [model.time - self.settle, *(moved[part].mean() for part in parts.values()), over]
                 yield np.array(row), model
 
-    def times(self, rows: Floats, over: float | None = None) -> dict[str, float]:
-        """When (s) each of the PARTS had moved by FAR and water was ``over`` (m²; left out: the share that the class
-        names) the crest, on straight lines between the rows of the course (m, 5); nan for never."""
-        limits = [FAR * self.height] * len(PARTS) + [self.over * self.height**2 if over is None else over]
+    def times(self, rows: Floats) -> dict[str, float]:
+        """When (s) each of the PARTS had moved by FAR and water was ``over`` the crest, on straight lines between the
+        rows of the course (m, 5); nan for never."""
+        limits = [FAR * self.height] * len(PARTS) + [self.over * self.height**2]
         found = {}
         for column, (name, limit) in enumerate(zip((*PARTS, "overtopped"), limits, strict=True), 1):
             beyond = np.flatnonzero(rows[:, column] > limit)

@@ -3,9 +3,10 @@
 from porescale.builders.checks.polygons_in_fluid import check_in_fluid
 from porescale.builders.initial.contact_laws import law_class
 from porescale.builders.initial.walls import moving_sides
+from porescale.common.core.constants import EDGE
 from porescale.common.core.errors import Fault
 from porescale.common.schema.names import name_faults, names_of
-from porescale.dem.prepare.rock import BEYOND
+from porescale.dem.prepare.rock import BEYOND, lines
 from porescale.scene.bodies.rock import Rock
 from porescale.scene.domain import SIDES
 from porescale.scene.packing import Packing
@@ -14,8 +15,6 @@ from porescale.scene.scene import Scene
 DEEPEST = 1.0
 """Of the gap, that sides of a rock's polygons may overlap from the start: cells and triangles run with as much, and at
 twice as much are torn within twenty steps."""
-WHOLE = 1e-6
-"""Of the room beside a rock, that may be missing for round-off."""
 
 
 def check_cell(scene: Scene) -> list[Fault]:
@@ -86,9 +85,7 @@ def check_rock(scene: Scene) -> list[Fault]:
 def _room_for_rock(scene: Scene, rock: Rock, packing: Packing) -> list[Fault]:
     """Faults of sides of the box that press on the sample, or that its plates would reach: it is to be free."""
     size = packing.width, packing.height
-    thickness, off = 0.25 * packing.diameter, 0.25 * packing.diameter
-    if rock.polygons:
-        thickness, off = 0.5 * ((rock.gap or 0.0) + (rock.pressed or 0.0)), 0.5 * (rock.gap or 0.0)
+    thickness, off = lines(0.5 * packing.diameter, rock.gap, rock.pressed)
     needed = dict.fromkeys(SIDES, thickness)
     if rock.plates != "none":
         along = 0 if rock.plates == "x" else 1
@@ -101,7 +98,7 @@ def _room_for_rock(scene: Scene, rock: Rock, packing: Packing) -> list[Fault]:
         "left": packing.left, "bottom": packing.bottom, "right": scene.domain.width - packing.left - packing.width,
         "top": scene.domain.height - packing.bottom - packing.height,
     }  # fmt: skip
-    short = [side for side in SIDES if room[side] < needed[side] * (1.0 - WHOLE)]
+    short = [side for side in SIDES if room[side] < needed[side] * (1.0 - EDGE)]
     if not short:
         return []
     wanted = " and ".join(f"{needed[side]:.3g} m from domain.{side}" for side in short)

@@ -15,7 +15,7 @@ from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.motion.control import Placed as PlacedControl
 from porescale.dem.motion.time_function import Schedule, Sine, Table
-from porescale.dem.prepare.rock import blocks, plates_beside
+from porescale.dem.prepare.rock import blocks, lines, plates_beside
 from porescale.scene.bodies.rock import Rock
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
@@ -50,11 +50,9 @@ def rock_frames(scene: Scene, law: ContactLaw) -> list[Placed]:
     upper = (packing.left + packing.width, packing.bottom + packing.height)
     density, material = plan.density(packing.material), plan.number(packing.material)
     made: list[Placed] = []
-    thickness = off = 0.5 * float(radius.mean())
+    thickness, off = lines(float(radius.mean()), rock.gap, rock.pressed)
     if rock.polygons:
         assert rock.gap
-        assert rock.pressed
-        thickness, off = 0.5 * (rock.gap + rock.pressed), 0.5 * rock.gap
         made = [
             Placed("rock", "rock", polygon(part, thickness, density, material=material), FREE)
             for part in blocks(rock.kind, at, lower, upper, rock.gap)

@@ -111,17 +111,18 @@ def rock(
         raise InputError(Fault("kind", kind, "no such rock", allowed=", ".join(KINDS)))
     diameter = 2.0 * float(packing.radius.mean())
     if kind == "discs":
-        thickness, frames = 0.5 * float(packing.radius.mean()), []
+        frames = []
         discs = make_discs(packing.position, packing.radius, density)
-        plates = plates_beside(lower, upper, thickness, thickness, density)
+        thickness, off = lines(0.5 * diameter)
+        plates = plates_beside(lower, upper, thickness, off, density)
         grains = framed(discs, plates, law, _open(lower, upper), rule=rule)
     else:
         if not (gap > 0.0 and pressed > 0.0):
             bad, name = (gap, "gap") if not gap > 0.0 else (pressed, "pressed")
             raise InputError(Fault(name, bad, "of polygons", "m", "> 0"))
-        thickness = 0.5 * (gap + pressed)
+        thickness, off = lines(0.5 * diameter, gap, pressed)
         frames = [polygon(part, thickness, density) for part in blocks(kind, packing.position, lower, upper, gap)]
-        plates = plates_beside(lower, upper, thickness, 0.5 * gap, density)
+        plates = plates_beside(lower, upper, thickness, off, density)
         grains = framed(None, [*frames, *plates], law, _open(lower, upper), rule=rule, skin=NEAR * gap)
     made = bond(grains)
     if not made or grains.bonds is None:
@@ -172,6 +173,16 @@ def blocks(kind: str, at: Floats, lower: Corner, upper: Corner, gap: float) -> l
     # A side shorter than the gap would be hidden behind the thickness of its neighbours.
     left = (shrunk(part, 0.5 * gap, shortest=gap) for part in parts)
     return [part for part in left if part is not None]
+
+
+def lines(radius: float, gap: float | None = None, pressed: float | None = None) -> tuple[float, float]:
+    """(thickness of the plates and of the sides of polygons, how far the plates' lines stand off the sample), m.
+
+    radius : mean of the packing's, m, for rock of discs;  gap, pressed : of polygons, m.
+    """
+    if gap is None or pressed is None:
+        return 0.5 * radius, 0.5 * radius
+    return 0.5 * (gap + pressed), 0.5 * gap
 
 
 def plates_beside(

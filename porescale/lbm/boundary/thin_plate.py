@@ -7,15 +7,24 @@ leaves it (Ladd 1994); over the two links of a crossing that sums to zero.
 """
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from porescale.common.compiled.jit import kernel
+from porescale.lbm.boundary.law import Boundary
 from porescale.lbm.boundary.sides import NAMES, Sides
 from porescale.lbm.lattice import CY, OPPOSITE, WEIGHTS, direction, row_length
 
 _CROSSING = (direction(1, 0), direction(1, 1), direction(1, -1))
+
+
+def open_ends(kinds: Mapping[str, Boundary], nx: int, column: int) -> list[str]:
+    """Sides that leave a plate left of ``column`` open: a bottom or top that does not turn the fluid back, a left or
+    right one that settles what passes it less than two cells beside the plate;  kinds : by name of the side."""
+    crossed = [side for side in ("bottom", "top") if kinds[side].periodic or kinds[side].settles]
+    return crossed + [side for side, at in (("left", 1), ("right", nx - 1)) if column == at and kinds[side].settles]
 
 
 class Plate:
@@ -32,13 +41,11 @@ class Plate:
     def __init__(self, nx: int, ny: int, column: int, sides: Sides, dtype: DTypeLike) -> None:
         if not 0 < column < nx:
             raise ValueError(f"a plate stands between two columns: column {column} is not in 1 … {nx - 1}")
-        left, right, bottom, top = (sides.boundary(side) for side in NAMES)
-        for kind in (bottom, top):
-            if kind.periodic or kind.settles:
-                raise ValueError(f"a plate needs a bottom and a top that turn the fluid back: {kind.name} does not")
-        for kind, beside in ((left, 1), (right, nx - 1)):
-            if kind.settles and column == beside:
-                raise ValueError(f"a plate stands two cells or more from a {kind.name} side: column {column} does not")
+        kinds = {side: sides.boundary(side) for side in NAMES}
+        bottom, top = kinds["bottom"], kinds["top"]
+        if open_at := open_ends(kinds, nx, column):
+            problem = "a plate needs sides that turn the fluid back at its ends, and two cells to any other"
+            raise ValueError(f"{problem}: {kinds[open_at[0]].name} does not")
         first, second, pull, row = [], [], [], []
         long = row_length(nx)
         for y in range(1, ny + 1):

@@ -1,6 +1,5 @@
 """Scenes thrown together at random: what the check accepts is built and, where nothing drives it, stays at rest."""
 
-import math
 import warnings
 from collections.abc import Callable
 from random import Random
@@ -46,7 +45,7 @@ BODIES: dict[str, Callable[[Random, float, float], dict[str, Any]]] = {
     "rectangle": lambda rng, x, y: {
         "lower": [x, y], "upper": [x + rng.uniform(0.002, 0.008), y + rng.uniform(0.002, 0.008)],
     },
-    "wall": lambda rng, x, y: {"x": x, "y": y, "normal": (lambda a: [math.cos(a), math.sin(a)])(rng.uniform(0, 6.28))},
+    "wall": lambda rng, x, y: {"x": x, "y": y, "normal": [rng.uniform(-1, 1), rng.uniform(-1, 1)]},
     "gate": lambda rng, x, y: {"x": round(x / CELL) * CELL},
     "ring": lambda rng, x, y: {"x": x, "y": y, "diameter": rng.uniform(0.02, 0.045)},
     "packing": lambda rng, x, y: {
@@ -81,7 +80,7 @@ def thrown(seed: int, wet: bool) -> dict[str, Any]:
         scene["domain"] |= {"left": "periodic", "right": "periodic"}
     for _ in range(rng.choice([1, 2, 2, 3])):
         kind = rng.choice(list(BODIES))
-        made = BODIES[kind](rng, *(rng.uniform(0.0, WIDTH) for _ in "xy"))
+        made = BODIES[kind](rng, rng.uniform(0.0, WIDTH), rng.uniform(0.0, WIDTH))
         where = scene["grains"] if kind in ("grain", "packing") else scene
         if kind in ("gate", "ring", "packing"):
             where[kind] = made
