@@ -128,7 +128,7 @@ KINDS = SceneKinds([
                  "are counted, densities and pressures kept for others, and Python stands between kernels, some 4 % "
                  "then; where the rest goes was not looked into"),
     SceneKind(SMOOTHED, "particle", SMALLEST, lambda: alone(numerics={"xsph": 0.5}),
-         because="5 to 9 % from process to process: as of water only"),
+         because="4 to 9 % from process to process: as of water only"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
           output=ENERGY_BUDGET),
