@@ -187,11 +187,14 @@ class Simulation(ShownSimulation):
             raise self.stepper.explained(error) from None
 
     def _advance(self, steps: int) -> None:
-        if self.stepper.takes_many and all(part.idle for part in self._between):
-            self.stepper.advance_many(steps)
-            return
         clock, advance, before, after = self.clock, self.stepper.advance, self._before, self._after
-        for _ in range(steps):
+        end = clock.step + steps
+        while clock.step < end:
+            if self.stepper.takes_many:
+                alone = min([part.acts_from for part in self._between], default=end)
+                if alone >= clock.step + 1:
+                    self.stepper.advance_many(int(min(alone, end)) - clock.step)
+                    continue
             for act in before:
                 act()
             advance()

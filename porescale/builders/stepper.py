@@ -28,6 +28,11 @@ class Clock:
         self.step = step
         self.time = step * self.seconds
 
+    def step_of(self, time: float) -> float:
+        """A step that is over, at the latest, half a step before ``time`` (s): what acts in the step that begins
+        nearest to it has nothing to do before."""
+        return time / self.seconds - 1.5
+
     def in_steps(self, error: Unstable) -> Unstable:
         """``error`` of the grains, which count contact steps, in steps and time of the simulation."""
         e = error
@@ -45,7 +50,7 @@ class Stepper(Part, ABC):
 
     @property
     def takes_many(self) -> bool:
-        """Whether `advance_many` is less work than so many times `advance`, where all other parts are idle."""
+        """Whether `advance_many` is less work than so many times `advance`, where no other part acts between steps."""
         return False
 
     def advance_many(self, steps: int) -> None:

@@ -16,7 +16,7 @@ from porescale.dem.forces.threads import add_surface_forces, all_pair_forces
 from porescale.dem.forces.walls import mark_near, move_plates
 from porescale.dem.motion.affine_strain import add_clump_terms, cell_now, move_discs, steer
 from porescale.dem.motion.leapfrog import add_step_work, withhold
-from porescale.dem.motion.rigid_and_driven import apply_drivers, move_bodies
+from porescale.dem.motion.rigid_and_driven import apply_drivers, move_bodies, stands
 
 WAY = 2.01
 """How far a disc gets within a call, in lengths that the list allows from where it was listed: from one side of that
@@ -43,7 +43,7 @@ def contact_steps(count, dt, drag, first, discs, pair_list, law, around, sweep, 
     for step in range(count):
         all_pair_forces(d, pairs, law, dt, cell_now(cell), sweep)
         add_surface_forces(d, surfaces, law, dt, sweep)
-        if motion is None and step == 0 and count >= MARK_AGAIN:  # walls stand still; springs far from them are at rest
+        if step == 0 and count >= MARK_AGAIN and stands(surfaces.walls, motion):  # springs far from them are at rest
             mark_near(d.position, d.radius, surfaces.walls, WAY * np.sqrt(pairs.limit_square), sweep.near)
         if framed is not None:
             add_segment_forces(d, framed[0], law, dt, cell)

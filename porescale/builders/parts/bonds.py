@@ -1,5 +1,6 @@
 """Bonds of a scene: made at their times between chosen bodies, counted, and located when they break."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -80,6 +81,11 @@ class BondsPart(Part):
         self.linear = contact is not None and law_class(contact).compresses
         self.made = 0
         self.before()  # what is bonded at time 0 is there in the first record
+
+    @property
+    def acts_from(self) -> float:
+        """The step of the next section."""
+        return self.clock.step_of(self.sections[self.made][1].at) if self.made < len(self.sections) else math.inf
 
     def before(self) -> None:
         """Bond what is to be bonded in the step that begins nearest to its time.  Warns of what pulls too hard but at

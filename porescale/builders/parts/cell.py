@@ -1,7 +1,6 @@
 """The strained cell of a dry scene: its strain, and its columns of series.csv."""
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -13,24 +12,11 @@ from porescale.dem.bodies.rigid import areas
 
 
 class CellPart(Part):
-    """Follows the strain of a cell; shear: the integral of its rate, since the tilt starts anew at half a width."""
+    """Reads the cell, which is a part of the grains' state."""
 
     def __init__(self, system: System) -> None:
         assert system.grains
-        self.clock, self.grains = system.clock, system.grains
-        self.shear = 0.0
-
-    def after(self) -> None:
-        """Add the shear of the step: its rates stay till the next."""
-        self.shear += self.clock.seconds * float(self.grains.steering.gradient()[0, 1])
-
-    def state(self) -> dict[str, Any]:
-        """The shear; the cell itself is of the grains."""
-        return {"shear": self.shear}
-
-    def restore(self, state: dict[str, Any]) -> None:
-        """Restore the state of a checkpoint."""
-        self.shear = float(state["shear"])
+        self.grains = system.grains
 
     def row(self) -> Row:
         """Columns of the series: strain (logarithms of the stretch of the edges; shear), the stress of the last step
@@ -52,7 +38,7 @@ class CellPart(Part):
         xx, xy, yy = grains.steering.cell_pressure()
         return {
             "strain xx ()": math.log(width / grains.box.period[0]),
-            "strain yy ()": math.log(height / grains.box.period[1]), "strain xy ()": self.shear,
+            "strain yy ()": math.log(height / grains.box.period[1]), "strain xy ()": grains.steering.shear(),
             "stress xx (Pa)": float(xx), "stress yy (Pa)": float(yy), "shear stress (Pa)": -float(xy),
             "cell width (m)": width, "cell height (m)": height, "cell tilt (m)": tilt,
             "solid fraction ()": float(areas(grains).sum()) / (width * height),

@@ -1,5 +1,6 @@
 """The gate, for fluid and grains alike: it opens at its time, at once or upward with a speed."""
 
+from math import inf
 from typing import Any
 
 from porescale.builders.initial.grains import GATE
@@ -21,9 +22,11 @@ class GatePart(Part):
         self.open = False
 
     @property
-    def idle(self) -> bool:
-        """Whether the gate has vanished, so that no motion is left."""
-        return self.open and self.lift_speed is None
+    def acts_from(self) -> float:
+        """The step that opens it; later it is lifted step by step in fluid, and by contact steps among grains."""
+        if not self.open:
+            return self.clock.step_of(self.opens_at)
+        return 0.0 if self.plate and self.lift_speed is not None else inf
 
     def before(self) -> None:
         """Open it in the step that begins nearest to its time, and lift it."""

@@ -20,17 +20,21 @@ class GrainsPart(Stepper):
 
     @property
     def takes_many(self) -> bool:
-        """Unless a load is a mean over a call."""
-        grains = self.grains
-        return not (grains.sleep or grains.steered or len(grains.held))
+        """Unless grains sleep, which fall asleep and wake between calls."""
+        return self.grains.sleep is None
 
     def advance_many(self, steps: int) -> None:
-        """All in one call; where a grain gets lost the clock stands at the step in which it did."""
-        before = self.grains.steps - self.clock.step
+        """All in one call, and the last in one more where loads are means over a call, so that they are those of the
+        last step; where a grain gets lost the clock stands at the step in which it did."""
+        grains, seconds = self.grains, self.clock.seconds
+        before = grains.steps - self.clock.step
+        last = 1 if steps > 1 and (grains.steered or len(grains.held)) else 0
         try:
-            self.grains.step(self.clock.seconds, self.weight, count=steps)
+            grains.step(seconds, self.weight, count=steps - last)
+            if last:
+                grains.step(seconds, self.weight)
         finally:
-            self.clock.put(self.grains.steps - before)
+            self.clock.put(grains.steps - before)
 
     def explained(self, error: Unstable) -> Unstable:
         """The ``error`` with its step counted in steps of the simulation."""

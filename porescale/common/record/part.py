@@ -8,6 +8,7 @@ last part to the first, so that a part may rely on what those after it have rest
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from math import inf
 from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
@@ -33,9 +34,10 @@ class Part:
         """Act just after a step; the clock stands at its end."""
 
     @property
-    def idle(self) -> bool:
-        """Whether `before` and `after` have nothing to do in any step to come."""
-        return not acts_between(self)
+    def acts_from(self) -> float:
+        """A step, counted from the start, before which `before` and `after` have nothing to do; inf: they never have
+        again."""
+        return 0.0 if acts_between(self) else inf
 
     def check(self) -> None:
         """Raise Unstable, naming cell or grain, quantity and step, where the state is not finite or out of bounds."""

@@ -35,22 +35,39 @@ def element_losses(before, after, force, slip, old_stiff, stiff, dt):
 
 
 @inline
-def add_contact_losses(i, seen, spring, roll, found, mass, dt, p, budget, law):
-    """Add to ``budget`` (n, BUDGET), row i, what one contact lost in the step; nothing where it is None.
+def contact_losses(seen, spring, roll, found, mass, dt, p, law):
+    """What one contact lost in the step, J/m: in the normal dashpot, the tangential one, friction, the rolling dashpot
+    and rolling friction, the first columns of the budget.
 
     Arguments and Response of ``contact``, with the springs before.
     """
-    if budget is None:
-        return
     elastic, _, scale, _, _, _ = stiffness(seen.overlap, seen.radius, mass, p, law)
     old = stiffness_scale(max(seen.overlap - seen.closing * dt, 0.0), seen.radius, law)
-    budget[i, NORMAL_DASHPOT] += (found.normal - elastic) * seen.closing * dt
-    dashpot, slider = element_losses(spring, found.spring, found.tangential, seen.slip, p[KT] * old, p[KT] * scale, dt)
-    budget[i, TANGENTIAL_DASHPOT] += dashpot
-    budget[i, FRICTION] += slider
-    dashpot, slider = element_losses(roll, found.roll, found.rolling, seen.rolling, p[KR] * old, p[KR] * scale, dt)
-    budget[i, ROLLING_DASHPOT] += dashpot
-    budget[i, ROLLING_FRICTION] += slider
+    slid = element_losses(spring, found.spring, found.tangential, seen.slip, p[KT] * old, p[KT] * scale, dt)
+    rolled = element_losses(roll, found.roll, found.rolling, seen.rolling, p[KR] * old, p[KR] * scale, dt)
+    return (found.normal - elastic) * seen.closing * dt, slid[0], slid[1], rolled[0], rolled[1]
+
+
+@inline
+def losses_if(budget, seen, spring, roll, found, mass, dt, p, law):
+    """As contact_losses; zeros where ``budget`` is None, which leaves it out when compiled."""
+    if budget is None:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    return contact_losses(seen, spring, roll, found, mass, dt, p, law)
+
+
+@inline
+def add_losses(budget, i, losses, rolling):
+    """Add ``losses`` (J/m) of contact_losses to ``budget`` (n, BUDGET), row i, those of rolling where ``rolling`` is
+    not None;  nothing where ``budget`` is None."""
+    if budget is None:
+        return
+    budget[i, NORMAL_DASHPOT] += losses[0]
+    budget[i, TANGENTIAL_DASHPOT] += losses[1]
+    budget[i, FRICTION] += losses[2]
+    if rolling is not None:
+        budget[i, ROLLING_DASHPOT] += losses[3]
+        budget[i, ROLLING_FRICTION] += losses[4]
 
 
 @inline

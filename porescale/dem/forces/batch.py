@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import disjoint, inline, unchecked_view
 from porescale.common.core.types import Floats
-from porescale.dem.contact.budget import has_budget
+from porescale.dem.contact.budget import add_losses, has_budget
 from porescale.dem.contact.law import has_history, load_history, row_numbers, store_history
 from porescale.dem.forces.pairs import answer_contact, contact_kinematics, leave_pair, relative_velocity, row_between
 from porescale.dem.motion.periodic_cell import add_load, image
@@ -28,13 +28,16 @@ ONE = np.uint64(1)
 """Columns of a contact: the way from i to j m, velocity of i relative to j m/s, spins rad/s, radii m, masses kg/m and
 springs m;  then what it answers, force on i N/m and torques on both N m/m.  numba compiles what takes plain numbers of
 Python for each of them."""
+LOST = np.arange(16, 21)
+"""Columns of what contacts lost, J/m, see budget.contact_losses: there where an energy budget is kept."""
 ONE_DISC, OTHER, PAIR = np.arange(3)
 """Columns of whole numbers: both discs, and the place in the list."""
 
 
-def scratch(threads: int) -> tuple[Floats, NDArray[np.int64]]:
-    """Columns of numbers and of whole numbers for each thread, (threads, 16 BATCH) and (threads, 3 BATCH)."""
-    return np.zeros((threads, 16 * BATCH)), np.zeros((threads, 3 * BATCH), np.int64)
+def scratch(threads: int, budget: bool = False) -> tuple[Floats, NDArray[np.int64]]:
+    """Columns of numbers and of whole numbers for each thread, (threads, 16 BATCH) and (threads, 3 BATCH); with an
+    energy ``budget`` (threads, 21 BATCH) numbers."""
+    return np.zeros((threads, (21 if budget else 16) * BATCH)), np.zeros((threads, 3 * BATCH), np.int64)
 
 
 @inline
@@ -47,6 +50,32 @@ def column(values, at):
 def answered(numbers):
     """The columns of what contacts answer."""
     return column(numbers, FX), column(numbers, FY), column(numbers, MOMENT_I), column(numbers, MOMENT_J)
+
+
+@inline
+def losses(numbers, budget):
+    """The columns of what contacts lost; empty where ``budget`` is None."""
+    if budget is None:
+        none = unchecked_view(numbers, 0, 0)
+        return none, none, none, none, none
+    return (
+        column(numbers, LOST[0]), column(numbers, LOST[1]), column(numbers, LOST[2]), column(numbers, LOST[3]),
+        column(numbers, LOST[4]),
+    )  # fmt: skip
+
+
+@inline
+def keep_losses(budget, lost, m, values):
+    """Overwrite row m of the columns ``lost`` with the five ``values`` (J/m); nothing where ``budget`` is None."""
+    if budget is not None:
+        lost[0][m], lost[1][m], lost[2][m], lost[3][m], lost[4][m] = values
+
+
+@inline
+def add_lost(budget, i, lost, m, law):
+    """Add row m of the columns ``lost`` to row i of ``budget``; nothing where it is None."""
+    if budget is not None:
+        add_losses(budget, i, (lost[0][m], lost[1][m], lost[2][m], lost[3][m], lost[4][m]), law.rolling)
 
 
 @inline
@@ -86,10 +115,10 @@ def put_down(i, first, last, m, d, pairs, law, dt, cell, numbers, which):
 
 
 @disjoint
-def answer_columns(count, seen, springs, answers, pair, d, law, dt):
-    """Answer ``count`` contacts: overwrites the columns of springs and ``answers``, and adds to the energy budget.
+def answer_columns(count, seen, springs, answers, lost, pair, d, law, dt):
+    """Answer ``count`` contacts: overwrites the columns of springs, ``answers`` and ``lost``, if any.
 
-    seen, springs, answers, pair: columns DX to MASS_J, SPRING and ROLL, FX to MOMENT_J, ONE_DISC and OTHER.
+    seen, springs, answers, lost, pair: columns DX to MASS_J, SPRING and ROLL, FX to MOMENT_J, LOST, ONE_DISC and OTHER.
     """
     dx, dy, du, dv, spin_i, spin_j, radius_i, radius_j, mass_i, mass_j = seen
     spring, roll = springs
@@ -102,8 +131,9 @@ def answer_columns(count, seen, springs, answers, pair, d, law, dt):
         mass = mass_i[m] * mass_j[m] / (mass_i[m] + mass_j[m])
         p = row_between(one[m], other[m], shared, law, material)
         held = spring[m], roll[m]
-        found, kept = answer_contact(one[m], overlap, way, mass, p, held, budget, law, dt)
+        found, kept, gone = answer_contact(overlap, way, mass, p, held, budget, law, dt)
         fx[m], fy[m], moment_i[m], moment_j[m] = found
+        keep_losses(budget, lost, m, gone)
         spring[m], roll[m] = kept
 
 
@@ -119,7 +149,7 @@ def answer(count, d, law, dt, numbers, which):
         (column(numbers, SPRING), column(numbers, ROLL)),
         (column(which, ONE_DISC), column(which, OTHER)),
     )
-    answer_columns(count, seen, springs, answered(numbers), pair, d, law, dt)
+    answer_columns(count, seen, springs, answered(numbers), losses(numbers, d.budget), pair, d, law, dt)
 
 
 @inline
@@ -183,6 +213,7 @@ def block_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbers, 
     force, torque = d.force, d.torque
     gx, gy, turn_i, turn_j = answered(numbers)
     dx, dy, springs, rolls = column(numbers, DX), column(numbers, DY), column(numbers, SPRING), column(numbers, ROLL)
+    lost = losses(numbers, d.budget)
     one, other, listed = column(which, ONE_DISC), column(which, OTHER), column(which, PAIR)
     i, k, now = first, np.int64(0), first
     fx, fy, moment = 0.0, 0.0, 0.0
@@ -195,6 +226,7 @@ def block_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbers, 
                 fx, fy, moment = 0.0, 0.0, 0.0
             j = np.uint64(other[m])
             store_history(pairs.history, np.uint64(listed[m]), springs[m], rolls[m], law)
+            add_lost(d.budget, one[m], lost, m, law)
             add_load(gx[m], gy[m], dx[m], dy[m], cell)
             fx += gx[m]
             fy += gy[m]
@@ -210,7 +242,7 @@ def block_far_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbe
     """Contacts of discs ``first`` to ``last`` - 1 with partners in later blocks: overwrites their places of ``far``
     (f, 4), and springs.  Arguments as in block_forces."""
     gx, gy, turn_i, turn_j = answered(numbers)
-    springs, rolls = column(numbers, SPRING), column(numbers, ROLL)
+    springs, rolls, lost = column(numbers, SPRING), column(numbers, ROLL), losses(numbers, d.budget)
     one, listed = column(which, ONE_DISC), column(which, PAIR)
     for q in range(far_start[first], far_start[last]):
         far[q, 0] = NOTHING
@@ -221,6 +253,7 @@ def block_far_forces(first, last, far_start, far, d, pairs, law, dt, cell, numbe
             n = one[m]
             q = far_start[n + 1] - pairs.start[n + 1] + listed[m]
             far[q, 0], far[q, 1], far[q, 2], far[q, 3] = gx[m], gy[m], turn_i[m], turn_j[m]
+            add_lost(d.budget, n, lost, m, law)
             store_history(pairs.history, np.uint64(listed[m]), springs[m], rolls[m], law)
 
 

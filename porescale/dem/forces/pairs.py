@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
-from porescale.dem.contact.budget import add_contact_losses, add_release_losses
+from porescale.dem.contact.budget import add_losses, add_release_losses, losses_if
 from porescale.dem.contact.law import (
     Relative,
     contact,
@@ -71,26 +71,29 @@ def relative_velocity(i, j, dx, dy, velocity, cell):
 
 
 @inline
-def answer_contact(i, overlap, way, mass, p, springs, budget, law, dt):
-    """A contact of round bodies: force on the first along x, y (N/m), torques on both (N m/m); then its springs (m).
+def answer_contact(overlap, way, mass, p, springs, budget, law, dt):
+    """A contact of round bodies: force on the first along x, y (N/m), torques on both (N m/m); then its springs (m),
+    and what it lost (J/m), see budget.losses_if.
 
-    overlap (m) > 0;  way: their Approach;  mass (kg/m) reduced;  p (COLUMNS,) row of the law;  springs m before.  The
-    energy budget, if any, has the losses at disc i.
+    overlap (m) > 0;  way: their Approach;  mass (kg/m) reduced;  p (COLUMNS,) row of the law;  springs m before.
     """
     seen = Relative(overlap, way.closing, way.slip, way.rolling, way.reduced)
     spring, roll = springs
     found = contact(seen, spring, roll, mass, dt, p, law)
-    add_contact_losses(i, seen, spring, roll, found, mass, dt, p, budget, law)
+    lost = losses_if(budget, seen, spring, roll, found, mass, dt, p, law)
     moment_i, moment_j = moments(found, way.arm_i, way.arm_j, way.rolls_at, law)
     fx, fy = force_components(found, way.nx, way.ny, law)
-    return (fx, fy, moment_i, moment_j), (found.spring, found.roll)
+    return (fx, fy, moment_i, moment_j), (found.spring, found.roll), lost
 
 
 @inline
 def contact_force(i, k, overlap, way, mass, p, history, budget, law, dt):
-    """``answer_contact`` for row k of ``history``, overwritten: force (N/m) and torques (N m/m)."""
-    answered, (spring, roll) = answer_contact(i, overlap, way, mass, p, load_history(history, k, law), budget, law, dt)
+    """``answer_contact`` for row k of ``history``, overwritten: force (N/m) and torques (N m/m).  The energy budget, if
+    any, has the losses at disc i."""
+    springs = load_history(history, k, law)
+    answered, (spring, roll), lost = answer_contact(overlap, way, mass, p, springs, budget, law, dt)
     store_history(history, k, spring, roll, law)
+    add_losses(budget, i, lost, law.rolling)
     return answered
 
 

@@ -221,10 +221,11 @@ def add_surface_forces(d, surfaces, law, dt, sweep):
     add_up(sweep.partial, to_plates + surfaces.plates.shape[0], surfaces.rectangle_force)
 
 
-def serial(count: int, surfaces: int) -> Serial:
-    """One thread over so many discs and surfaces; all discs count as near."""
+def serial(count: int, surfaces: int, budget: bool) -> Serial:
+    """One thread over so many discs and surfaces, with or without an energy ``budget``; all discs count as near."""
     blocks = max(1, -(-count // BLOCK))
-    return Serial(np.zeros((blocks, surfaces, 3)), np.ones((surfaces, -(-count // RUN)), np.uint8), *scratch(1))
+    near = np.ones((surfaces, -(-count // RUN)), np.uint8)
+    return Serial(np.zeros((blocks, surfaces, 3)), near, *scratch(1, budget))
 
 
 class ThreadChoice:
@@ -234,8 +235,8 @@ class ThreadChoice:
     """
 
     def __init__(self, count: int) -> None:
-        self.count = count
-        self.one = serial(count, 0)
+        self.count, self.budget = count, False
+        self.one = serial(count, 0, self.budget)
         self.far_start, self.incoming_start = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
         self.incoming, self.far = np.zeros(0, np.int64), np.zeros((0, 4))
         self.columns = scratch(0)
@@ -246,14 +247,14 @@ class ThreadChoice:
 
         budget : an energy budget is kept;  alone : something in the step allows one thread only.
         """
-        if self.one.partial.shape[1] != surfaces:
-            self.one = serial(self.count, surfaces)
+        if (self.one.partial.shape[1], self.budget) != (surfaces, budget):
+            self.one, self.columns, self.budget = serial(self.count, surfaces, budget), scratch(0), budget
         if alone or self.count < SERIAL_BELOW or (threads() == 1 and not budget):
             return self.one
         if self._builds != pairs.builds:
             self._renew(pairs)
         if len(self.columns[0]) != most_threads():
-            self.columns = scratch(most_threads())
+            self.columns = scratch(most_threads(), budget)
         return Threads(*self.one[:2], *self.columns, self.far_start, self.incoming_start, self.incoming, self.far)
 
     def _renew(self, pairs: PairList) -> None:

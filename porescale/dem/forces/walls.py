@@ -16,7 +16,7 @@ from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.ranges import Range, numbers
 from porescale.common.core.types import Floats
-from porescale.dem.contact.budget import SURFACES, add_contact_losses, add_release_losses, add_work, has_budget
+from porescale.dem.contact.budget import SURFACES, add_losses, add_release_losses, add_work, has_budget, losses_if
 from porescale.dem.contact.law import (
     Relative,
     contact,
@@ -148,7 +148,7 @@ def surface_contact(i, nx, ny, distance, vx, vy, turn, d, memory, dt, laws, law)
     spring, roll = load_history(memory, i, law)
     found = contact(seen, spring, roll, mass, dt, p, law)
     store_history(memory, i, found.spring, found.roll, law)
-    add_contact_losses(i, seen, spring, roll, found, mass, dt, p, d.budget, law)
+    add_losses(d.budget, i, losses_if(d.budget, seen, spring, roll, found, mass, dt, p, law), law.rolling)
     moment, other = moments(found, arm, 0.0, radius, law)
     fx, fy = force_components(found, nx, ny, law)
     return fx, fy, moment, other

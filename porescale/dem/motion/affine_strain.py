@@ -38,7 +38,9 @@ WIDTH, HEIGHT, TILT, GXX, GXY, GYY, WIDTH_THEN, HEIGHT_THEN, TILT_THEN, REACH, S
 """Columns of a strained cell's state: edges m and velocity gradient 1/s; edges when the pairs were listed, their
 largest reach and skin (m); work done by the cell since it began, J/m; from the last on, mean rates of xx, yy, xy under
 a stress (1/s)."""
-STATE = AHEAD + 3
+SHEAR = AHEAD + 3
+"""One more: the shear since it began, which the tilt is not, as that starts anew at half a width."""
+STATE = SHEAR + 1
 STRESS, SHARE, LIMIT, STIFFNESS, DAMPING = range(5)
 """Columns of the plan of xx, yy, xy: 1 for a wanted stress;  share -, limit 1/s;  of one contact N/m, N s/m."""
 
@@ -213,7 +215,8 @@ def move_deforming(d, pairs, drag, dt, sweep, cell):
 
 @kernel
 def strain(state, dt):
-    """Strain the edges in ``state`` (STATE,) by its gradient over ``dt`` (s)."""
+    """Strain the edges in ``state`` (STATE,) by its gradient over ``dt`` (s), and add to its shear."""
+    state[SHEAR] += dt * state[GXY]
     state[TILT] += dt * (state[GXX] * state[TILT] + state[GXY] * state[HEIGHT])
     state[WIDTH] += dt * state[GXX] * state[WIDTH]
     state[HEIGHT] += dt * state[GYY] * state[HEIGHT]

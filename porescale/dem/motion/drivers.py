@@ -108,6 +108,10 @@ class Drivers:
         c = self.cell
         return np.array([[c[cells.GXX], c[cells.GXY]], [0.0, c[cells.GYY]]])
 
+    def shear(self) -> float:
+        """Shear of the cell since it began to be strained: the integral of its rate."""
+        return 0.0 if self.cell is None else float(self.cell[cells.SHEAR])
+
     def _compile(self) -> None:
         """Overwrite the arrays of controls and time functions that kernels read."""
         kinds = [KINDS[type(row[3])] for row in self._controls]

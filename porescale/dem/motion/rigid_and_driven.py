@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import kernel
+from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import ClumpArrays, gather, place_members
 from porescale.dem.contact.budget import EXTERNAL, HOLDERS, add_work
+from porescale.dem.forces.walls import TURN, VX, VY
 from porescale.dem.motion.affine_strain import affine_kick_drift, any_left, drift_of
 from porescale.dem.motion.control import CLUMP, INDEX, KIND, PUSH, apply_control
 from porescale.dem.motion.leapfrog import withhold
@@ -40,6 +41,17 @@ class DriverArrays(NamedTuple):
 
 FIRST_CONTROL = 3
 """Row of the first control's schedule: after those of the cell."""
+
+
+@inline
+def stands(walls, a):
+    """Whether all walls (w, WALL) stand still during a call;  a: DriverArrays, or None."""
+    if a is None:
+        return True
+    still = a.drive.shape[0] == 0
+    for w in range(walls.shape[0]):
+        still = still and walls[w, VX] == 0.0 and walls[w, VY] == 0.0 and walls[w, TURN] == 0.0
+    return still
 
 
 @kernel

@@ -55,7 +55,7 @@ class ActiveSet:
         )  # fmt: skip
         done, moved = contact_steps(
             count, dt, drag, True, self.discs[:], self.pairs._replace(limit_square=limit)[:], self.law, around[:],
-            self.sweep if surfaces else serial(len(self.index), 0), None, g.cell, None,
+            self.sweep if surfaces else serial(len(self.index), 0, g.budget is not None), None, g.cell, None,
         )  # fmt: skip
         return int(done), bool(moved)
 
@@ -103,5 +103,5 @@ def active_set(
         np.ascontiguousarray(grains.wall_spring[:, index]), np.ascontiguousarray(grains.plate_spring[:, index]),
         np.ascontiguousarray(grains.rectangle_spring[:, index]),
         np.zeros((len(grains.walls), 3)), np.zeros((len(grains.plates), 2)), np.zeros((len(grains.rectangles), 2)),
-        grains.contact, serial(m, grains.surface_count),
+        grains.contact, serial(m, grains.surface_count, grains.budget is not None),
     )  # fmt: skip

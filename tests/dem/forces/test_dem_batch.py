@@ -5,7 +5,7 @@ import pytest
 
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.arrays import Pairs, contact_arrays
-from porescale.dem.contact.budget import BUDGET, TANGENTIAL_DASHPOT
+from porescale.dem.contact.budget import BUDGET, FRICTION, NORMAL_DASHPOT, ROLLING_FRICTION
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.law import row_numbers, springs_of
 from porescale.dem.contact.linear import Linear
@@ -84,9 +84,9 @@ def found(how, discs, pairs, law, cell):
     return mine.force, mine.torque, listed.history, mine.budget, cell.load if isinstance(cell, Straining) else None
 
 
-def batches(*arguments):
+def batches(discs, *arguments):
     """All pairs by the kernel."""
-    pair_forces(*arguments, *(it[0] for it in scratch(1)))
+    pair_forces(discs, *arguments, *(it[0] for it in scratch(1, discs.budget is not None)))
 
 
 def same(ones, others):
@@ -109,12 +109,15 @@ def test_so_do_they_with_materials_in_periodic_and_strained_cells(cell):
     assert same(found(batches, discs, pairs, law, cell), found(one_after_another, discs, pairs, law, cell))
 
 
-def test_what_contacts_lose_is_booked_at_the_lower_disc():
-    discs, pairs, law = crowd(LAWS["linear"], budget=True)
+@pytest.mark.parametrize("name", LAWS)
+def test_what_contacts_lose_is_booked_at_the_lower_disc(name):
+    discs, pairs, law = crowd(LAWS[name], budget=True)
     pairs.history[:] = 0.0  # springs that are released are booked before the contacts of a batch: in another order
     one, other = (found(how, discs, pairs, law, Still(0.0, 0.0)) for how in (batches, one_after_another))
     assert same(one, other)
-    assert np.count_nonzero(one[3][:, TANGENTIAL_DASHPOT]) > COUNT // 4
+    assert np.count_nonzero(one[3][:, NORMAL_DASHPOT]) > COUNT // 4
+    assert np.any(one[3][:, FRICTION]) == (name != "smooth")
+    assert np.any(one[3][:, ROLLING_FRICTION]) == (name == "rolling")
 
 
 def test_another_order_of_contacts_gives_other_bits():  # the twin that must fail
