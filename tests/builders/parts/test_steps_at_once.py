@@ -26,7 +26,8 @@ SCENES: dict[str, dict[str, Any]] = {
     "held disc": {"disc": [DISC]},
     "turning disc": {"disc": [{**DISC, "turning": 20.0}]},
     "bonds": {
-        "grains__packing": None, "grains__overlap": 0.01, "grains__grain": [grain(0.003 + 0.000995 * k, 0.0005) for k in range(4)],
+        "grains__packing": None, "grains__overlap": 0.01,
+        "grains__grain": [grain(0.003 + 0.000995 * k, 0.0005) for k in range(4)],
         "bonds": [{"at": 0.0, "bodies": ["grain 0", "grain 1"]}, {"at": LATER}],
     },
     "walls that move": {"wall": [{"x": 0.006, "y": 0.0, "normal": [1.0, 0.0], "velocity_x": 0.2}]},
