@@ -21,6 +21,7 @@ from porescale.coupling.coverage.rows import (
     motion_of_block,
     motion_of_body,
     motion_of_row,
+    row_of,
     solid_velocity,
 )
 
@@ -64,14 +65,14 @@ def accumulate_load_band(band, bands, patches, motion, periodic_x, sums, row_loa
     fraction = patches.fraction
     for k in range(bands.start[band], bands.start[band + 1]):
         if k + AHEAD < bands.start[band + 1]:
-            j = max(band * bands.height - bands.low[k + AHEAD], 0)
+            j = max(band * bands.height - row_of(k + AHEAD, bands, patches), 0)
             soon = (bands.body[k + AHEAD] * row_load.shape[1] + j) * row_load.shape[2]
             for b in range(0, 3 * LINE, LINE):
                 prefetch(row_load, soon + b)
         n = bands.body[k]
         base, stride = patches.corner[n, 0], patches.stride[n]
         body = motion_of_body(n, patches, motion)
-        above = bands.low[k] - band * bands.height
+        above = row_of(k, bands, patches) - band * bands.height
         if periodic_x:
             base %= nx
         begin, end = lines_inside(k, band, bands, patches)

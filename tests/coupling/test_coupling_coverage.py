@@ -167,8 +167,8 @@ def listed(wet, band):
     bands, found = wet._bands, []
     for k in range(bands.start[band], bands.start[band + 1]):
         lines = range(*coverage_rows.lines_inside.py_func(k, band, bands, wet._patches))
-        assert lines  # an entry stands for a row or more
-        found += [(int(bands.body[k]), j, int(bands.low[k]) + j) for j in lines]
+        low = int(coverage_rows.row_of.py_func(k, bands, wet._patches))
+        found += [(int(bands.body[k]), j, low + j) for j in lines]
     return found
 
 
@@ -188,6 +188,36 @@ def test_bands_list_each_row_of_each_disc_once(kind):
     else:
         assert sorted(rows) == sorted((n, j, y) for n, j, y in every if 0 <= y < 17)
     assert len(set(rows)) == len(rows)
+
+
+@pytest.mark.parametrize("kind", ["wall", "periodic"])
+def test_bodies_that_stay_in_their_room_are_listed_as_if_anew(kind):
+    rng = np.random.default_rng(5)
+    discs = np.column_stack((rng.uniform(0.0, 20.0, 40), rng.uniform(-3.0, 43.0, 40), rng.uniform(0.4, 5.0, 40)))
+    none, still = np.zeros((40, 2)), np.zeros(40)
+    moving, kept = covered(discs, 20, 40, ("wall", kind)), 0
+    for _ in range(60):
+        discs[:, 1] += rng.uniform(-0.15, 0.15, 40)
+        before = moving._bands.listed.copy()
+        moving.cover(discs[:, :2], none, still)
+        kept += np.array_equal(moving._bands.listed, before) and not np.array_equal(before, moving._patches.corner[:, 1])
+        anew = covered(discs, 20, 40, ("wall", kind))
+        np.testing.assert_array_equal(moving.covered, anew.covered)
+        for band in range(len(anew._bands.start) - 1):
+            assert listed(moving, band) == listed(anew, band)
+    assert kept > 5  # lists that were not those of the corners now
+
+
+def test_beyond_its_room_a_body_is_missed(monkeypatch):  # the twin that must fail
+    wet = covered([(8.0, 14.0, 3.0)], 20, 40)
+    none = np.zeros((1, 2))
+    for unseen in (False, True):
+        wet.cover(np.array([[8.0, 14.0]]), none, np.zeros(1))
+        low = wet._patches.corner[0, 1]
+        if unseen:
+            wet._bands.listed[0] = low + 12  # as if it had been listed where it goes
+        wet.cover(np.array([[8.0, 26.0]]), none, np.zeros(1))
+        assert np.isclose(wet.solid.sum(), 9.0 * np.pi) != unseen
 
 
 @pytest.mark.parametrize("r", [0.3, 6.02, 400.0])
@@ -217,7 +247,7 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
         "cover_part",
     ):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
-    of_bands = "bands_between", "list_part", "lines_inside", "blocks_inside", "views_of", "rasterize_band"
+    of_bands = "bands_about", "first_image", "has_room", "list_part", "row_of", "lines_inside", "blocks_inside", "views_of", "rasterize_band"
     for name in (*of_bands, "motion_of_body", "motion_of_row", "motion_of_block", "solid_velocity"):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
     for module, name in ((coverage, "cover"), (coverage_rows, "list_bands"), (coverage_rows, "rasterize")):
@@ -243,7 +273,7 @@ def test_loads_are_the_same_uncompiled(monkeypatch):
             take, add = take.py_func, add.py_func
         if plain:
             of_cells = "motion_of_body", "motion_of_row", "motion_of_block", "load_of_cell"
-            for name in ("lines_inside", "blocks_inside", *of_cells, "add_rows_of"):
+            for name in ("lines_inside", "row_of", "blocks_inside", *of_cells, "add_rows_of"):
                 monkeypatch.setattr(load, name, getattr(load, name).py_func)
             monkeypatch.setattr(load, "solid_velocity", coverage_rows.solid_velocity.py_func)
         row_load, loads, inside = np.full_like(wet._work.row_load, np.nan), np.zeros((2, 3)), np.zeros((2, 2))

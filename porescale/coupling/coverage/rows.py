@@ -24,12 +24,14 @@ AHEAD = 4
 more than all that is done with it."""
 LINE = 16
 """Numbers from one fetch to the next: a line of the cache in single precision, a pair of lines in double."""
+ROOM = 1
+"""Rows that a body may go before all are listed anew: hundreds of steps."""
+UNLISTED = -(1 << 62)
 LISTING = 4
 """Parts of the lattice whose bands are listed side by side; any number gives the same lists."""
 SERIAL_BELOW = 8192
-"""Blocks of all patches: fewer are covered and listed by one thread, in 0.4 ms at most; and rows that loads have room
-for, that are added so.  To have two threads begin and end a loop takes 0.1 to 0.5 ms beside six other
-busy processes (measured)."""
+"""Blocks of all patches: fewer are listed by one thread; and rows that loads have room for, that are added so.  To
+have two threads begin and end a loop takes 0.1 to 0.5 ms beside six other busy processes (measured)."""
 
 
 class Patches(NamedTuple):
@@ -63,17 +65,19 @@ class Motion(NamedTuple):
 class Bands(NamedTuple):
     """Which bodies lie in which band of the lattice: entries start[b] to start[b + 1] - 1 are those of band b.
 
-    height: rows of a band, the last of which may have less;  rows: of the lattice;  start (bands + 1,);  body, low (as
-    many as patches have rows): the body, and the row of the lattice in which its patch begins, beyond a periodic side,
-    too.  A body is not negative by its type: an index that might be is tested at each use, a tenth of a sweep of discs
-    of four cells.
+    height: rows of a band, the last of which may have less;  rows: of the lattice;  start (bands + 1,);  body, image
+    (entries,): the body, and what has to be added to the row of its corner, see ``row_of``;  listed (n,): rows of the
+    corners when they were listed.  Bodies may go ``ROOM`` rows from there before they are listed anew; an entry may
+    have no row in its band.  A body is not negative by its type: an index that might be is tested at each use, a tenth
+    of a sweep of discs of four cells.
     """
 
     height: int
     rows: int
     start: NDArray[np.int64]
     body: NDArray[np.uint32]
-    low: NDArray[np.int64]
+    image: NDArray[np.int64]
+    listed: NDArray[np.int64]
 
 
 def whole_blocks(cells: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -90,47 +94,72 @@ def make_patches(width: NDArray[np.int64], height: NDArray[np.int64], dtype: np.
 
 
 def make_bands(patches: Patches, ny: int, height: int) -> Bands:
-    """Lists that hold the patches in bands of ``height`` rows: each entry stands for a row or more of its body."""
-    entries = int(np.sum(patches.height))
+    """Lists that hold the patches in bands of ``height`` rows: each entry stands for a row or more of its body, or of
+    its room.  Nothing is listed yet."""
+    entries = int(np.sum(patches.height + 2 * ROOM))
     start = np.zeros(-(-ny // height) + 1, np.int64)
-    return Bands(height, ny, start, np.zeros(entries, np.uint32), np.zeros(entries, np.int64))
+    listed = np.full(len(patches.height), UNLISTED)
+    return Bands(height, ny, start, np.zeros(entries, np.uint32), np.zeros(entries, np.int64), listed)
 
 
 @inline
 def is_few(patches):
-    """Whether one thread does all patches: ``SERIAL_BELOW``."""
+    """Whether one thread lists all patches: ``SERIAL_BELOW``."""
     return patches.fraction.shape[0] < SERIAL_BELOW * BLOCK
 
 
 @inline
-def bands_between(low, high, bands):
-    """First and one past the last band of rows ``low`` to ``high`` - 1; none of rows beyond the lattice."""
-    low, high = max(low, 0), min(high, bands.rows)
+def row_of(k, bands, patches):
+    """The row of the lattice in which the patch of entry ``k`` begins, beyond a periodic side, too."""
+    return patches.corner[bands.body[k], 1] + bands.image[k]
+
+
+@inline
+def bands_about(low, height, bands):
+    """First and one past the last band of a patch of ``height`` rows from ``low`` on, and of its room; none of rows
+    beyond the lattice."""
+    low, high = max(low - ROOM, 0), min(low + height + ROOM, bands.rows)
     if low >= high:
         return 0, 0
     return low // bands.height, (high - 1) // bands.height + 1
 
 
+@inline
+def has_room(corner, listed):
+    """Whether no corner (n, 2) is more than ``ROOM`` rows from where it was ``listed`` (n,)."""
+    near = True
+    for n in range(listed.shape[0]):
+        near = near and abs(corner[n, 1] - listed[n]) <= ROOM
+    return near
+
+
+@inline
+def first_image(low, periodic_y, rows):
+    """The highest row at which a patch that begins in row ``low`` may reach into the lattice with its room."""
+    return low % rows + rows if periodic_y else low
+
+
 @parallel_kernel
 def list_bands(patches, periodic_y, bands):
-    """Which bodies lie in which band of the lattice, and from which row on, in index order: a counting sort.
+    """Which bodies lie in which band of the lattice, in index order: a counting sort.
 
-    Overwrites bands.  A body is higher than a periodic box by two rows at most.
+    Overwrites bands, unless all bodies are in the room that they were listed for: to write the lists, which other
+    threads have read, takes ten times as long as to see that.  A body is higher than a periodic box by two rows at most.
     """
+    if has_room(patches.corner, bands.listed):
+        return
     start = bands.start
     count = start.shape[0] - 1
     start[:] = 0
     # How many begin less how many have ended in each band; then their sums, the number in each; then their sums.
     for n in range(patches.height.shape[0]):
-        low = patches.corner[n, 1]
-        if periodic_y:
-            low %= bands.rows
+        low, height = first_image(patches.corner[n, 1], periodic_y, bands.rows), patches.height[n]
         while True:  # once, or again for what lies beyond a periodic side
-            first, last = bands_between(low, low + patches.height[n], bands)
+            first, last = bands_about(low, height, bands)
             start[first] += 1
             start[last] -= 1
             low -= bands.rows
-            if not periodic_y or low + patches.height[n] <= 0:
+            if not periodic_y or low + height + ROOM <= 0:
                 break
     here = 0
     total = 0
@@ -146,31 +175,32 @@ def list_bands(patches, periodic_y, bands):
     for b in range(count, 0, -1):
         start[b] = start[b - 1]
     start[0] = 0
+    for n in range(bands.listed.shape[0]):
+        bands.listed[n] = patches.corner[n, 1]
 
 
 @inline
 def list_part(patches, periodic_y, bands, begin, end):
     """List bands ``begin`` to ``end`` - 1 of the lattice; moves bands.start of each to where its entries end."""
     for n in range(patches.height.shape[0]):
-        low = patches.corner[n, 1]
-        if periodic_y:
-            low %= bands.rows
+        corner, height = patches.corner[n, 1], patches.height[n]
+        low = first_image(corner, periodic_y, bands.rows)
         while True:  # once, or again for what lies beyond a periodic side
-            first, last = bands_between(low, low + patches.height[n], bands)
+            first, last = bands_about(low, height, bands)
             for b in range(max(first, begin), min(last, end)):
                 at = bands.start[b]
                 bands.body[at] = n
-                bands.low[at] = low
+                bands.image[at] = low - corner
                 bands.start[b] = at + 1
             low -= bands.rows
-            if not periodic_y or low + patches.height[n] <= 0:
+            if not periodic_y or low + height + ROOM <= 0:
                 break
 
 
 @inline
 def lines_inside(k, band, bands, patches):
     """Rows of the patch of entry ``k`` that lie in ``band``: first, one past the last."""
-    low, bottom = bands.low[k], band * bands.height
+    low, bottom = row_of(k, bands, patches), band * bands.height
     top = min(bottom + bands.height, bands.rows)
     return max(bottom - low, 0), min(top - low, patches.height[bands.body[k]])
 
@@ -288,13 +318,13 @@ def rasterize_band(band, bands, patches, motion, periodic_x, sums, extent, soft)
     for k in range(bands.start[band], bands.start[band + 1]):
         if k + AHEAD < bands.start[band + 1]:
             m = bands.body[k + AHEAD]
-            soon = patches.start[m] + max(band * bands.height - bands.low[k + AHEAD], 0) * patches.stride[m]
+            soon = patches.start[m] + max(band * bands.height - row_of(k + AHEAD, bands, patches), 0) * patches.stride[m]
             for b in range(0, 3 * LINE, LINE):  # those of a small body; what follows in memory comes by itself
                 prefetch(fraction, soon + b)
         n = bands.body[k]
         base, stride = patches.corner[n, 0], patches.stride[n]
         body = motion_of_body(n, patches, motion)
-        above = bands.low[k] - band * bands.height
+        above = row_of(k, bands, patches) - band * bands.height
         if periodic_x:
             base %= nx
         begin, end = lines_inside(k, band, bands, patches)

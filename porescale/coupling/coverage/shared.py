@@ -7,7 +7,7 @@ one in others, and the lattice bears several times too much there.  With ``MOST`
 
 from porescale.common.compiled.jit import inline, parallel_kernel, prange, thread, unchecked_view
 from porescale.common.compiled.simd import choose, load_eight, store_eight
-from porescale.coupling.coverage.rows import BLOCK, blocks_inside, is_few, lines_inside
+from porescale.coupling.coverage.rows import BLOCK, blocks_inside, is_few, lines_inside, row_of
 
 MOST = 0.9
 """Solid fraction of a cell that two bodies share, at most.  Chosen by measurement: docs/theory/lubrication.md."""
@@ -29,7 +29,7 @@ def of_several(cell, band, own, bands, patches, body, joined):
     for k in range(bands.start[band], bands.start[band + 1]):
         n = bands.body[k]
         if n == own or (n < body.shape[0] and body[n] != body[own]):
-            j = band * bands.height + y - bands.low[k]
+            j = band * bands.height + y - row_of(k, bands, patches)
             i = (x - patches.corner[n, 0]) % joined if joined else x - patches.corner[n, 0]
             while 0 <= j < patches.height[n] and 0 <= i < patches.stride[n]:
                 if patches.fraction[patches.start[n] + j * patches.stride[n] + i] > 0:
@@ -55,7 +55,7 @@ def open_band(band, bands, patches, body, clumps, periodic_x, s):
             if n >= body.shape[0]:
                 continue
             base, stride = patches.corner[n, 0], patches.stride[n]
-            above = bands.low[k] - band * bands.height
+            above = row_of(k, bands, patches) - band * bands.height
             if periodic_x:
                 base %= nx
             begin, end = lines_inside(k, band, bands, patches)
