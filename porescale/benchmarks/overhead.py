@@ -139,7 +139,7 @@ KINDS = SceneKinds([
          because="0.94 to 1.02 from run to run; the smallest asks every grain at each step whether it touches a "
                  "wall, here those are asked that may before the pair list is due"),
     SceneKind("fixed grains in water", "cell", SMALLEST, lambda: built(fixed(), "cell", nothing_moves), steps=20,
-         because="1.02 to 1.05 from run to run: contact steps of discs that nothing moves are left out"),
+         because="1.02 to 1.06 from run to run: contact steps of discs that nothing moves are left out"),
     added("rolling friction", "grain", "dry grains", dry, contact=CONTACT | ROLLING),
     added("energy book", "grain", "dry grains", dry, output=ENERGY_BUDGET),
     added("gate that stands", "grain", "dry grains", dry, domain=WIDER, gate={"x": GRAINS[0], "opens_at": LATER}),

@@ -67,7 +67,7 @@ def smallest(made: Simulation) -> Callable[[int], object]:
 
 KINDS = SceneKinds([
     SceneKind("moving grains in water", "cell", SMALLEST, lambda: built(wet(), "cell", smallest), steps=10,
-         because="1.15 to 1.20 from run to run: rows with grains are laid out and their loads taken, lists and sums "
+         because="1.13 to 1.18 from run to run: rows with grains are laid out and their loads taken, lists and sums "
                  "over rows, contact steps, Python"),
     SceneKind("grains that may move", "cell", "the same grains, held", lambda: built(wet(), "cell", nothing_moves),
          steps=10),

@@ -76,8 +76,10 @@ class Row:
 
 
 def measure(kind: SceneKind, rounds: int = 15) -> Row:
-    """Build and time a kind: the least over rounds, since others on the machine only ever make a call slower."""
+    """Build and time a kind: the least over rounds, since others on the machine only ever make a call slower.  Bytes are
+    those before the rounds, whose number of steps is not the same in each run: pairs may be listed anew in them."""
     made = kind.make()
+    size = bytes_of(made.model)
     calls = (lambda: made.other(kind.steps)), (lambda: made.steps(kind.steps))
     least = [float("inf"), float("inf")]
     for turn in range(-1, rounds):  # the first to warm up
@@ -86,7 +88,7 @@ def measure(kind: SceneKind, rounds: int = 15) -> Row:
             least[at] = min(least[at], seconds) if turn >= 0 else least[at]
     other, own = (seconds / kind.steps for seconds in least)
     return Row(
-        kind.name, list(made.parts), kind.item, made.count, bytes_of(made.model) / made.count, own, kind.beside, other,
+        kind.name, list(made.parts), kind.item, made.count, size / made.count, own, kind.beside, other,
         own / other, kind.because,
     )  # fmt: skip
 
