@@ -149,7 +149,7 @@ def convert(
     overwrite: Annotated[bool, Parameter(help="replace the file")] = False,
 ) -> int:
     """Make a scene of a deck."""
-    from porescale.common.api.folders import require_writable
+    from porescale.common.api.folders import require_file
     from porescale.common.core.atomic import write_text
     from porescale.demseg.build import Options
     from porescale.demseg.convert import UNITS, scene_of, stretched, toml
@@ -162,7 +162,7 @@ def convert(
     deck = read_deck(folder)
     name = folder.resolve().name
     file = out or Path(f"{name}.toml")
-    require_writable(file.parent, "--out")
+    require_file(file, "--out")
     if file.exists() and not overwrite:
         raise InputError(Fault("--out", str(file), "is there already", repair="name another, or --overwrite it"))
     if rule != "outline" and any(body.segments for body in deck.bodies):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from porescale.common.api.folders import require_writable
+from porescale.common.api.folders import require_file, require_writable
 from porescale.common.cli.options import Json, Threads, say, use_threads
 from porescale.common.core.errors import Fault, InputError
 
@@ -66,7 +66,7 @@ def measure(
         raise InputError(Fault("films", None, "none given", repair="give two pictures, or a film"))
     for path, key in ((csv, "--csv"), (openpiv, "--openpiv")):
         if path is not None:
-            require_writable(path.parent, key)
+            require_file(path, key)
     if csv is not None and openpiv is not None and csv.resolve() == openpiv.resolve():
         raise InputError(Fault("--openpiv", str(openpiv), "is the file of --csv, too", repair="give them two names"))
     folder = (

@@ -157,8 +157,10 @@ def test_masks_from_bitmaps_polygons_and_brightness(tmp_path):
     # A disc of 9 px rolls within one of 29 px: corners of the drawn rim are lost, a pixel here and there of 88.
     assert (segmented(image, bright=True) != bitmap(image)).sum() < 0.3 * 88
     assert np.array_equal(segmented(255 - image, bright=False), segmented(image, bright=True))
-    with pytest.raises(InputError, match="--polygon"):
-        polygon("1,2 3,4", SIZE)
+    for text in ("1,2 3,4", "nan,0 1,1 2,0", "0,0 1e9,0 1e9,1e9 0,1e9"):
+        with pytest.raises(InputError, match=r"--polygon = .*: is no polygon"):
+            polygon(text, SIZE)
+    assert polygon("-1e6,-1e6 1e6,-1e6 1e6,1e6 -1e6,1e6", SIZE).all()
     columns = SIZE[1]
     with pytest.raises(InputError, match=r"--polygon = .*: lies outside of the picture"):  # metres, or another film's
         polygon(f"{columns + 5},0 {columns + 9},0 {columns + 9},9", SIZE)

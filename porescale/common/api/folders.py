@@ -90,6 +90,14 @@ def require_writable(folder: Path, key: str) -> None:
                 part.rmdir()
 
 
+def require_file(file: Path, key: str, like: str = "") -> None:
+    """InputError naming ``key`` unless ``file`` can be written: no folder, and in one that can be; leaves nothing
+    behind.  like : a name to propose."""
+    if file.is_dir():
+        raise InputError(Fault(key, str(file), "is a folder", repair=f"name a file{f', as {like}' if like else ''}"))
+    require_writable(file.parent, key)
+
+
 def unusable(folder: Path, key: str, error: OSError) -> InputError:
     """The system's error on ``folder``, as a fault of the input."""
     problem = f"cannot be written ({error.strerror or error})"

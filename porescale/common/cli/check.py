@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.api.folders import require_writable
+from porescale.common.api.folders import require_file
 from porescale.common.cli.options import Json, Quality, Scene, Settings, require_scene
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
@@ -56,9 +56,7 @@ def drawing(file: Path = Path("scene.png")) -> Path:
     """The file of a picture; InputError unless it is a PNG file that can be written."""
     if file.suffix.lower() != ".png":
         raise InputError(Fault("--picture", str(file), "is no PNG file", repair=f"name it {file.stem or 'scene'}.png"))
-    if file.is_dir():
-        raise InputError(Fault("--picture", str(file), "is a folder", repair="name a file"))
-    require_writable(file.parent, "--picture")
+    require_file(file, "--picture")
     return file
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.api.folders import require_writable
+from porescale.common.api.folders import require_file, require_writable
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.read_card import NAME as CARD
@@ -72,7 +72,7 @@ def _figure(package: Package, folder: Path, asked: Asked) -> Path:
     )  # fmt: skip
     wanted.kind(asked.out)
     if asked.out is not None:
-        require_writable(asked.out.parent, "--out")
+        require_file(asked.out, "--out")
     else:
         _require_room(folder)
     runs = [folder, *([asked.against] if asked.against is not None else [])]

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from porescale.common.api.folders import require_writable
+from porescale.common.api.folders import require_file, require_writable
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.read_card import NAME as CARD
@@ -46,7 +46,7 @@ def command(package: Package) -> Callable[..., int]:
         most = MOST if size is None else size
         if not most >= LEAST:
             raise InputError(Fault("--size", size, "is out of range", "MiB", f">= {LEAST}"))
-        require_file(run, out)
+        require_page(run, out)
         print(write([open_run(folder, package) for folder in folders], out, full=full, mebibytes=most))
         return 0
 
@@ -70,17 +70,18 @@ def _of_sweep(package: Package, folder: Path, out: Path | None) -> Path:
     from porescale.common.watch.sweep_report import write_sweep_report
 
     require_own(package, min(folder.glob(f"[!.]*/{CARD}")).parent)
-    require_file(folder, out)
+    require_page(folder, out)
     return write_sweep_report(folder, package, out)
 
 
-def require_file(folder: Path, out: Path | None) -> None:
+def require_page(folder: Path, out: Path | None) -> None:
     """InputError unless the page can be written: to ``out``, or into the folder where it is None."""
     from porescale.common.page.page import NAME
 
-    if out is not None and out.is_dir():
-        raise InputError(Fault("--out", str(out), "is a folder", repair=f"name a file, as {out / NAME}"))
-    require_writable(folder if out is None else out.parent, "--out")
+    if out is None:
+        require_writable(folder, "--out")
+    else:
+        require_file(out, "--out", str(out / NAME))
 
 
 def require_own(package: Package, folder: Path) -> None:

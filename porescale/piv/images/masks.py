@@ -15,6 +15,8 @@ from porescale.piv.images.stacks import is_stack
 
 SEGMENTS = ("bright", "dark")
 """Words in a mask's place: segment every frame."""
+FAR = 1e6
+"""px: beyond it OpenCV's whole numbers may run over."""
 GREY = 0.5
 """Share of white from which a pixel of a bitmap of more than two values is solid."""
 
@@ -50,10 +52,10 @@ def polygon(text: str, size: tuple[int, int]) -> Flags:
     holds no pixel."""
     try:
         corners = np.array([[float(part) for part in corner.split(",")] for corner in text.split()])
-        if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
+        if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.all(np.abs(corners) <= FAR):
             raise ValueError
     except ValueError as error:
-        raise InputError(Fault("--polygon", text, "is no polygon", allowed='"x,y x,y x,y …" in px')) from error
+        raise InputError(Fault("--polygon", text, "is no polygon", allowed=f'"x,y x,y x,y …" in px, {FAR:g} at most')) from error
     drawn = np.zeros(size, np.uint8)
     cv2.fillPoly(drawn, [np.rint(corners * 16).astype(np.int32)], (1,), cv2.LINE_8, 4)
     if not drawn.any():

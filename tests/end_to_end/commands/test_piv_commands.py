@@ -60,6 +60,13 @@ def test_two_tables_have_two_files(piv, tmp_path):
     assert said == ["--openpiv = 'm.csv': is the file of --csv, too; give them two names"]
 
 
+@pytest.mark.parametrize("option", ["--csv", "--openpiv"])
+def test_a_table_that_is_a_folder_is_refused_before_pictures_are_read(piv, tmp_path, option):
+    code, _, said = piv("measure", "a.png", "b.png", option, ".")
+    assert code == 2
+    assert said == [f"{option} = '.': is a folder; name a file"]
+
+
 def test_a_pair_is_made_measured_and_compared(piv, tmp_path):
     code, _, _ = piv("synth", "discs", "--size", "256", "--peak", "3", "--out", "pair")
     assert code == 0
