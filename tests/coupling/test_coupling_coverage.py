@@ -200,7 +200,8 @@ def test_bodies_that_stay_in_their_room_are_listed_as_if_anew(kind):
         discs[:, 1] += rng.uniform(-0.15, 0.15, 40)
         before = moving._bands.listed.copy()
         moving.cover(discs[:, :2], none, still)
-        kept += np.array_equal(moving._bands.listed, before) and not np.array_equal(before, moving._patches.corner[:, 1])
+        listed_before = np.array_equal(moving._bands.listed, before)
+        kept += listed_before and not np.array_equal(before, moving._patches.corner[:, 1])
         anew = covered(discs, 20, 40, ("wall", kind))
         np.testing.assert_array_equal(moving.covered, anew.covered)
         for band in range(len(anew._bands.start) - 1):
@@ -247,8 +248,16 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
         "cover_part",
     ):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
-    of_bands = "bands_about", "first_image", "has_room", "list_part", "row_of", "lines_inside", "blocks_inside", "views_of", "rasterize_band"
-    for name in (*of_bands, "motion_of_body", "motion_of_row", "motion_of_block", "solid_velocity"):
+    of_lists = "bands_about", "first_image", "has_room", "list_part", "row_of", "lines_inside", "blocks_inside"
+    for name in (
+        *of_lists,
+        "views_of",
+        "rasterize_band",
+        "motion_of_body",
+        "motion_of_row",
+        "motion_of_block",
+        "solid_velocity",
+    ):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
     for module, name in ((coverage, "cover"), (coverage_rows, "list_bands"), (coverage_rows, "rasterize")):
         monkeypatch.setattr(f"porescale.coupling.psm.{name}", getattr(module, name).py_func)

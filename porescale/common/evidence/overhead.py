@@ -76,8 +76,10 @@ class Row:
 
 
 def measure(kind: SceneKind, rounds: int = 15) -> Row:
-    """Build and time a kind: the least over rounds, since others on the machine only ever make a call slower.  Bytes are
-    those before the rounds, whose number of steps is not the same in each run: pairs may be listed anew in them."""
+    """Build and time a kind: the least over rounds, since others on the machine only ever make a call slower.
+
+    Bytes are those before the rounds, whose number of steps is not the same in each run: pairs may be listed anew.
+    """
     made = kind.make()
     size = bytes_of(made.model)
     calls = (lambda: made.other(kind.steps)), (lambda: made.steps(kind.steps))

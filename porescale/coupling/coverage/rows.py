@@ -25,7 +25,7 @@ more than all that is done with it."""
 LINE = 16
 """Numbers from one fetch to the next: a line of the cache in single precision, a pair of lines in double."""
 ROOM = 1
-"""Rows that a body may go before all are listed anew: hundreds of steps."""
+"""Rows that a body may go before all are listed anew: 70 to 220 steps of the main job."""
 UNLISTED = -(1 << 62)
 LISTING = 4
 """Parts of the lattice whose bands are listed side by side; any number gives the same lists."""
@@ -144,7 +144,8 @@ def list_bands(patches, periodic_y, bands):
     """Which bodies lie in which band of the lattice, in index order: a counting sort.
 
     Overwrites bands, unless all bodies are in the room that they were listed for: to write the lists, which other
-    threads have read, takes ten times as long as to see that.  A body is higher than a periodic box by two rows at most.
+    threads have read, takes ten times as long as to see that.  A body is higher than a periodic box by two rows at
+    most.
     """
     if has_room(patches.corner, bands.listed):
         return
@@ -318,7 +319,8 @@ def rasterize_band(band, bands, patches, motion, periodic_x, sums, extent, soft)
     for k in range(bands.start[band], bands.start[band + 1]):
         if k + AHEAD < bands.start[band + 1]:
             m = bands.body[k + AHEAD]
-            soon = patches.start[m] + max(band * bands.height - row_of(k + AHEAD, bands, patches), 0) * patches.stride[m]
+            j = max(band * bands.height - row_of(k + AHEAD, bands, patches), 0)
+            soon = patches.start[m] + j * patches.stride[m]
             for b in range(0, 3 * LINE, LINE):  # those of a small body; what follows in memory comes by itself
                 prefetch(fraction, soon + b)
         n = bands.body[k]

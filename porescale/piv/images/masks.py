@@ -55,7 +55,8 @@ def polygon(text: str, size: tuple[int, int]) -> Flags:
         if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.all(np.abs(corners) <= FAR):
             raise ValueError
     except ValueError as error:
-        raise InputError(Fault("--polygon", text, "is no polygon", allowed=f'"x,y x,y x,y …" in px, {FAR:g} at most')) from error
+        allowed = f'"x,y x,y x,y …" in px, {FAR:g} at most'
+        raise InputError(Fault("--polygon", text, "is no polygon", allowed=allowed)) from error
     drawn = np.zeros(size, np.uint8)
     cv2.fillPoly(drawn, [np.rint(corners * 16).astype(np.int32)], (1,), cv2.LINE_8, 4)
     if not drawn.any():
