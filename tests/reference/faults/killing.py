@@ -73,8 +73,15 @@ ASLEEP = table(
     grains__grain=[grain(0.002, 0.0066, 0.0008)], sleep={"share": 0.05, "after": 0.002},
 )  # fmt: skip
 """A grain sinks onto others that sleep under water."""
+DRY = table(
+    fluid=None, grains__hydraulic_radius_ratio=None, grains__packing__settle=False, output__energy=True,
+    gate=None, bonds=[{"at": 0.012}],
+    polygon=[{"sides": 4, "diameter": 0.0015, "thickness": 1e-4, "at": [[0.002, 0.007]], "density": 2500.0}],
+    control=[{"polygon": 0, "y": {"velocity": -0.05}, "record": True}],
+)  # fmt: skip
+"""Many contact steps are done at once here, but where what touches is bonded."""
 SCENES: dict[str, tuple[str, dict[str, Any]]] = {
-    "column": ("porescale", COLUMN), "asleep": ("porescale", ASLEEP),
+    "column": ("porescale", COLUMN), "asleep": ("porescale", ASLEEP), "dry": ("porescale", DRY),
     "tank": ("continuum_sph", TANK), "seeping": ("continuum_sph", SEEPING),
 }  # fmt: skip
 
