@@ -16,7 +16,7 @@ from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import Discs
 from porescale.dem.forces.rectangle import Rectangle
-from porescale.dem.forces.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
+from porescale.dem.forces.walls import PRESENT, VELOCITY, Box, Plate
 from porescale.dem.measures.energy import open_budget
 from porescale.dem.motion.affine_strain import Deforming
 from porescale.dem.motion.periodic_cell import Still
@@ -207,11 +207,6 @@ class Grains(State):
         index = self.plate(name)
         self.plates[index, PRESENT] = 0.0
         self.plate_spring[index] = 0.0
-
-    def plate_ends(self, name: str) -> tuple[float, float, float]:
-        """(x, lower end, upper end) of the plate, m."""
-        row = self.plates[self.plate(name)]
-        return float(row[X]), float(row[LOW]), float(row[HIGH])
 
     def restore(self, state: dict[str, Any]) -> None:
         """Overwrite all that ``state()`` holds, bit for bit; raises InputError when numbers of parts differ."""

@@ -22,6 +22,7 @@ from porescale.builders.parts.gate import GatePart
 from porescale.builders.simulation import Simulation
 from porescale.common.core.errors import InputError
 from porescale.dem.forces.batch import scratch
+from porescale.dem.forces.walls import HIGH, LOW
 from tests.reference.same_run import leaves
 from tests.reference.scenes import column, dry, grain, table, water
 
@@ -180,7 +181,7 @@ def test_without_a_gate_there_is_no_plate(monkeypatch):
 def test_a_gate_stands_in_fluid_and_grains_alike():
     simulation = build(column(grains__packing__settle=False))
     assert len(simulation.fluid.plates) == 1
-    assert simulation.grains.plate_ends("gate") == (0.008, 0.0, 0.008)
+    assert simulation.grains.plates[0, : HIGH + 1].tolist() == [0.008, 0.0, 0.008]
     dry_one, wet_one = build(dry(gate={"x": 0.008})), build(water(gate={"x": 0.004}, domain=table()["domain"]))
     assert len(dry_one.grains.plates) == 1
     assert len(wet_one.fluid.plates) == 1
@@ -190,11 +191,11 @@ def test_the_gate_opens_at_its_time_and_rises_alike_in_fluid_and_grains():
     simulation = build(column(grains__packing__settle=False))
     (plate,) = simulation.fluid.plates
     simulation.advance(50)  # opens_at 2 ms = 50 steps of 40 us
-    assert (plate.lower_edge, simulation.grains.plate_ends("gate")[1]) == (0.0, 0.0)
+    assert (plate.lower_edge, simulation.grains.plates[0, LOW]) == (0.0, 0.0)
     simulation.advance(25)
     # 0.4 m/s over 25 steps of 4e-5 s is 0.4 mm = 2 cells; sums of 25 roundings.
     assert plate.lower_edge == pytest.approx(2.0, rel=25 * 2**-52)
-    assert simulation.grains.plate_ends("gate")[1] == pytest.approx(0.0004, rel=100 * 2**-52)
+    assert simulation.grains.plates[0, LOW] == pytest.approx(0.0004, rel=100 * 2**-52)
 
 
 def test_a_gate_without_lift_speed_vanishes_at_its_time():

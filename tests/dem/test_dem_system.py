@@ -10,7 +10,7 @@ from porescale.dem.forces import pairs as forces
 from porescale.dem.forces import walls
 from porescale.dem.forces.batch import pair_forces, scratch
 from porescale.dem.forces.rectangle import add_rectangle_forces
-from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.forces.walls import LOW, Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
 from porescale.dem.measures.energy import elastic
@@ -77,7 +77,7 @@ def test_fast_grains_follow_the_slow_twin(release):
         ("angle", d.angle * d.radius, [b.angle * b.r for b in twin.bodies]),
     ):
         np.testing.assert_allclose(fast, slow, atol=1e-10 * 0.1, rtol=0, err_msg=name)
-    assert grains.plate_ends("plate")[1] == pytest.approx(twin.plates[0][1], rel=1e-12)
+    assert grains.plates[0, LOW] == pytest.approx(twin.plates[0][1], rel=1e-12)
 
 
 def compress(grains):

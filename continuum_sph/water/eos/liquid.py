@@ -48,12 +48,6 @@ def pressure_of_tait(ratio, law):
     return tait(ratio, law.stiffness, law.exponent)
 
 
-@inline
-def tait_density(pressure, stiffness, exponent, density):
-    """Density (kg/m³) at ``pressure`` (Pa, above -B): ρ0 (1 + p/B)^(1/γ)."""
-    return density * (1.0 + pressure / stiffness) ** (1.0 / exponent)
-
-
 @dataclass(frozen=True)
 class Tait:
     """density : ρ0, kg/m³, > 0;  sound_speed : c0, m/s, at ρ0, > 0;  exponent : γ, > 1.  InputError for others."""
