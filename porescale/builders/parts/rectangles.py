@@ -1,11 +1,13 @@
 """Rectangles in motion, for fluid and grains alike."""
 
+from math import inf
 from typing import Any
 
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.record.part import Part
 from porescale.dem.forces.rectangle import LEFT, RIGHT, VELOCITY_X
+from porescale.scene.bodies.rectangle import Rectangle as RectangleSection
 
 MAKE_GOOD = 64
 """Steps after which what left with rectangles is made good: even, and too few for a density to change that is seen."""
@@ -25,6 +27,17 @@ class RectanglesPart(Part):
         closed = not any(side.open for side in system.scene.domain.sides.values())
         self.make_good = next((it.make_good for it in self.sections if it.make_good is not None), closed)
         self.made_good = 0.0
+
+    @property
+    def acts_from(self) -> float:
+        """The first step of one that is still to start; now while one moves, and in the step that ends it."""
+        return min((self._acts_from(it) for it in self.sections if it.fastest), default=inf)
+
+    def _acts_from(self, section: RectangleSection) -> float:
+        """The same of one rectangle that moves at some time."""
+        if section.stops_at is not None and self.clock.step > section.stops_at / self.clock.seconds + 1.5:
+            return inf
+        return self.clock.step_of(section.starts_at)
 
     def after(self) -> None:
         """Put all where they are now."""
